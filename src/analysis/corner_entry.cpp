@@ -136,11 +136,13 @@ class Entries {
  private:
   /// Otherwise what the two blocks have moved lets corners enter no deeper than is tolerated, and only tips are gone through within the step.
   bool may_end_too_deep() const { return reach_ > behind * tolerated_; }
+  /// [m] Behind an edge: no deeper a corner is met.
+  double met_depth() const { return std::max(0.5 * tolerated_, flush_m); }
   /// Whether a corner is near enough to the line of an edge to come behind it in the step, and not as deep behind it already as it may enter: of most
   /// edges that is known before its way is.
   bool may_enter(const Vec2& p, int into, int e) const {
     const Vec2 start = system_.position(into, e), edge = system_.position(into, system_.next(e)) - start;
-    const double area = cross(edge, p - start), reach = area <= 0.0 ? reach_ : may_end_too_deep() ? std::max(0.5 * tolerated_, flush_m) : 0.0;
+    const double area = cross(edge, p - start), reach = area <= 0.0 ? reach_ : may_end_too_deep() ? met_depth() : 0.0;
     return area * area <= reach * reach * edge.squaredNorm();
   }
   /// [m] No more than 2 area / perimeter of a convex block, whose perimeter is at most that of the circle around it.
@@ -180,14 +182,13 @@ class Entries {
   }
   /// [-] When a corner that has come through an edge and leaves through the next one within the step is half-way to where it is as near to that as to
   /// the edge. Detection finds it there, and all others that have come by then and have not left: a cut at each one's moment would be one for each
-  /// place where four blocks of a slope meet. By then it is no deeper than others may be.
+  /// place where four blocks of a slope meet. By then it is no deeper than a corner is met, for rigid ones hardly more than flush.
   double before_leaving(const Course& course, const Way& corner, int into, int next, double come) const {
     const Way start = ways_(into, next), end = ways_(into, system_.next(next));
     const Course to_next(corner, start, end);
     const auto nearer = [&](double part) { return to_next.depth(part) - course.depth(part); };
     const double at_first = nearer(come), at_last = nearer(1.0);
-    const double deepest = std::max(flush_m, 0.5 * tolerated_);
-    return at_first > 0.0 ? std::min(come + 0.5 * (1.0 - come) * at_first / (at_first - at_last), course.part(deepest, deepest)) : come;
+    return at_first > 0.0 ? std::min(come + 0.5 * (1.0 - come) * at_first / (at_first - at_last), course.part(met_depth(), met_depth())) : come;
   }
   /// [m] Of a corner behind the line of an edge at the end of the step.
   double depth_at_end(const Way& corner, int into, int e) const {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "openclose/analysis/farthest.h"
+
 namespace openclose {
 namespace {
 
@@ -77,14 +79,7 @@ class ByRelativeDisplacement : public EquilibriumSearch {
 
   int steps_of_trial() const { return 2 * first_steps_; }
 
-  double farthest(const Displacements& from) const {
-    const auto& system = simulation_.system();
-    double largest = 0.0;
-    for (int b : system.free_blocks()) {
-      largest = std::max(largest, Motion::displacement_bound(system.displacement(b) - from[b], system.block(b).radius));
-    }
-    return largest;
-  }
+  double farthest(const Displacements& from) const { return farthest_displacement(simulation_.system(), from); }
 
   SettleResult follow(int most_steps, bool stop_when_steady, const SettleProgress& progress) {
     const Displacements start = simulation_.system().state().displacement;

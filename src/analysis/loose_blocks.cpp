@@ -8,21 +8,19 @@
 
 #include "openclose/analysis/frozen_limit.h"
 #include "openclose/analysis/loose_motion.h"
+#include "openclose/analysis/named_states.h"
 #include "openclose/scene/increased_load.h"
 #include "openclose/statics/frozen_system.h"
 
 namespace openclose {
 namespace {
 
-constexpr double slowest = 1e-2;  ///< [-] of the fastest block: slower ones are carried along by rounding
-
-using limit_analysis::Mechanism;
 using limit_analysis::Problem;
 
 /// Empty unless failure is proved.
-Mechanism mechanism_of(Problem problem) {
+limit_analysis::Mechanism mechanism_of(Problem problem) {
   limit_analysis::Trial trial = limit_analysis::LimitAnalysis(std::move(problem)).at(1.0);
-  return trial.verdict == limit_analysis::Verdict::infeasible ? std::move(trial.mechanism) : Mechanism();
+  return trial.verdict == limit_analysis::Verdict::infeasible ? std::move(trial.mechanism) : limit_analysis::Mechanism();
 }
 
 /// The same blocks, each pushed by a part of its load and turned by it at the arm of its farthest vertex.
@@ -35,13 +33,13 @@ Problem pushed(Problem problem, double sideways, double turning) {
   return problem;
 }
 
-std::vector<FailingBlock> moving(const FrozenSystem& system, const Problem& problem, const Mechanism& mechanism) {
+std::vector<FailingBlock> moving(const FrozenSystem& system, const Problem& problem, const limit_analysis::Mechanism& mechanism) {
   double fastest = 0.0;
   const auto speed = [&](std::size_t row) { return limit_analysis::speed(problem.blocks[row], mechanism[row]); };
   for (std::size_t row = 0; row < mechanism.size(); ++row) fastest = std::max(fastest, speed(row));
   std::vector<FailingBlock> list;
   for (std::size_t row = 0; row < mechanism.size(); ++row) {
-    if (speed(row) <= slowest * fastest) continue;
+    if (speed(row) <= slowest_of_mechanism * fastest) continue;
     const FrozenBlock& block = system.blocks()[row];
     list.push_back({block.block, 0.0, block.centroid, mechanism[row].velocity / fastest, mechanism[row].rotation / fastest});
   }
@@ -59,11 +57,11 @@ std::string loose_blocks_in_words(const Scene& scene) {
   const FrozenSystem system(begin);
   const Problem problem = limit_problem(system, FrozenStrength(system, scene));
   try {
-    if (const Mechanism found = mechanism_of(problem); !found.empty())
+    if (const limit_analysis::Mechanism found = mechanism_of(problem); !found.empty())
       return "these blocks do not stand as they are drawn: " + motion_in_words(scene, moving(system, problem, found));
     for (const double push : {least_push, -least_push}) {
       for (const bool turns : {false, true}) {
-        const Mechanism found = mechanism_of(pushed(problem, turns ? 0.0 : push, turns ? push : 0.0));
+        const limit_analysis::Mechanism found = mechanism_of(pushed(problem, turns ? 0.0 : push, turns ? push : 0.0));
         if (found.empty()) continue;
         return fmt::format("nothing holds these blocks against a push of {:g} of their weight: {}", least_push,
                            motion_in_words(scene, moving(system, problem, found)));

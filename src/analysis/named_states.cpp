@@ -7,9 +7,8 @@
 namespace openclose {
 namespace {
 
-constexpr double slowest_of_mechanism = 1e-2;  ///< [-] of the fastest block: slower ones are carried along by rounding and springs
-constexpr double drawn_travel = 0.5;           ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
-constexpr double most_drawn_turn = 0.25;       ///< [rad] of any of its blocks: drawn to first order, areas grow by the square of it
+constexpr double drawn_travel = 0.5;      ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
+constexpr double most_drawn_turn = 0.25;  ///< [rad] of any of its blocks: drawn to first order, areas grow by the square of it
 
 void move_block(const FrozenSystem& system, int row, const BlockVector& d, BlockSystem& blocks) {
   const FrozenBlock& block = system.blocks()[row];

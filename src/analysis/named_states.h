@@ -9,6 +9,9 @@
 
 namespace openclose {
 
+/// [-] Of the fastest block of a mechanism: slower ones are carried along by rounding and springs.
+inline constexpr double slowest_of_mechanism = 1e-2;
+
 /// The drawn blocks, moved by the closures, and the forces that hold them.
 NamedState stable_state(const Scene& drawn, const FrozenSystem& system, const FrozenState& state);
 

@@ -89,8 +89,8 @@ RunResult run(Simulation& simulation, const RunObserver& observer);
 class MotionInTime;
 
 /// A run that goes on, bit for bit, from what a checkpoint of the same scene holds, in a simulation that has not been used. The scene may have
-/// another end.time_s (not before the state's), other output and threads, and another solver.smallest_fraction and solver.max_iterations, to get over
-/// a step that did not converge.
+/// another end.time_s (not before the state's), other threads, output.every_s, checkpoint_every_s and formats, and another solver.smallest_fraction
+/// and solver.max_iterations, to get over a step that did not converge.
 class ResumedRun {
  public:
   /// Reads the state, which is left where the observer's own part begins. Throws DamagedState if it does not fit the scene; no step is made yet.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "openclose/analysis/farthest.h"
 #include "openclose/core/process.h"
 #include "openclose/core/tolerance.h"
 
@@ -73,10 +74,7 @@ bool follow(const Simulation& simulation, const StepResult& step, SettleCourse& 
   }
   ++result.steps;
   result.unbalanced_fraction = step.unbalanced_force / simulation.state().force_scale();
-  for (int b : system.free_blocks()) {
-    const Motion::Unknowns way = system.displacement(b) - course.start[b];
-    result.displacement = std::max(result.displacement, Motion::displacement_bound(way, system.block(b).radius));
-  }
+  result.displacement = std::max(result.displacement, farthest_displacement(simulation.system(), course.start));
   const bool is_balanced = result.unbalanced_fraction <= input.unbalanced_fraction;
   // Forces that were in balance with cohesion that is gone now are to be balanced anew.
   if (is_balanced && !step.lost_strength) {

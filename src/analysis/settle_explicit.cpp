@@ -2,6 +2,7 @@
 #include <limits>
 #include <optional>
 
+#include "openclose/analysis/farthest.h"
 #include "openclose/analysis/settle.h"
 
 namespace openclose {
@@ -14,14 +15,7 @@ constexpr int displacement_every = 100;  ///< steps between two looks at the dis
 class Travel {
  public:
   explicit Travel(const Simulation& simulation) : simulation_(simulation), start_(simulation.system().state().displacement) {}
-  double largest() const {
-    const BlockSystem& system = simulation_.system();
-    double largest = 0.0;
-    for (int b : system.free_blocks()) {
-      largest = std::max(largest, Motion::displacement_bound(system.displacement(b) - start_[b], system.block(b).radius));
-    }
-    return largest;
-  }
+  double largest() const { return farthest_displacement(simulation_.system(), start_); }
 
  private:
   const Simulation& simulation_;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "openclose/core/error.h"
+#include "openclose/integrator/integrators.h"
 #include "openclose/integrator/registry.h"
 
 namespace openclose {
@@ -26,11 +27,8 @@ MethodInput settling_method(const Scene& scene) {
   if (!is_settled_by_another(scene)) return settling;
   settling.contact = *scene.settled_by;
   // These are of the motion's method, and some methods refuse them.
-  settling.integrator.reset();
+  forget_integrator(settling);
   settling.first_integrator.reset();
-  settling.theta.reset();
-  settling.rho_inf.reset();
-  settling.dissipation.reset();
   settling.static_solver = StaticSolver::automatic;
   settling.statics = false;
   return settling;

@@ -103,7 +103,7 @@ LossesOfStep losses(const StepProblem& problem, const StepSolution& solution, bo
     if (status != ContactStatus::sliding || !weakens_along_slip(joint, c.joint_state)) continue;
     const double left = 1.0 - loss(joint, {}, c.joint_state);
     // A spring that is relieved slips at once, however short the step: only what the blocks' motion does goes with its length.
-    const double by_motion = std::abs(solution.contacts.slip_change(i)) / joint.slip_weakening_distance;
+    const double by_motion = weakening_by(joint, std::abs(solution.contacts.slip_change(i)));
     largest.along_slip = std::max(largest.along_slip, std::min({lost, left, by_motion}));
   }
   return largest;

@@ -1,6 +1,6 @@
 // Steps that an enforcement solves for: soft, hard and shi. A step that fails moves no block and takes no history on; contacts
-// that it has found anew, blocks that it has woken and counters stay, and what the linear solver keeps, which shows in the answer as far as Newton's
-// method tolerates.
+// that it has found anew, blocks that it has woken and counters stay, and what enforcement, step control and linear solver keep, which shows in the
+// answer as far as Newton's method tolerates.
 #pragma once
 
 #include "openclose/analysis/simulation_state.h"

@@ -5,6 +5,7 @@
 
 #include "openclose/analysis/corner_entry.h"
 #include "openclose/analysis/solved_step.h"
+#include "openclose/analysis/watch.h"
 #include "openclose/core/tolerance.h"
 
 namespace openclose {
@@ -18,7 +19,7 @@ constexpr int most_cuts_at_entry = 8;
 constexpr double shorter_by_cut = 0.9;
 
 /// [-] Of solver.gap_tolerance_m: rigid blocks that come to be deeper in each other within a step are met earlier. Half of what the watch lets pass.
-constexpr double passing_of_tolerance = 5.0;
+constexpr double passing_of_tolerance = 0.5 * watch_bound::gap_tolerances;
 constexpr double halved = 0.5;  ///< [-] part of a step
 
 /// [-] Of the width of the narrower block: behind an edge that it is not in contact with, a corner at whose contact springs are to act may be four

@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "openclose/analysis/run.h"
+#include "openclose/analysis/watch.h"
 #include "openclose/core/error.h"
 #include "openclose/core/process.h"
 #include "openclose/io/checkpoint.h"
@@ -18,13 +19,11 @@
 namespace openclose {
 namespace {
 
-/// [-] Of the energy moved, as much as the watch lets pass of what is created: from here on the loss is named.
-constexpr double noticeable_loss = 0.01;
-
-/// Numerical damping is an entry of the ledger of its own, so that the imbalance does not show it.
+/// Numerical damping is an entry of the ledger of its own, so that the imbalance does not show it. It is named where more is lost than the watch lets
+/// pass of what is created.
 std::string loss_by_integrator(const EnergyLedger& ledger) {
   const double share = ledger.integrator_loss();
-  return share > noticeable_loss ? fmt::format(", {:.2g} % of them taken by the integrator", 100.0 * share) : std::string();
+  return share > watch_bound::created_energy ? fmt::format(", {:.2g} % of them taken by the integrator", 100.0 * share) : std::string();
 }
 
 /// The tables that grow while a run goes on.

@@ -1,5 +1,5 @@
 // What a joint law remembers of a contact beside its springs. A law that remembers more adds it here: contacts, the loop of `dem`, the states of
-// statics, checkpoints and the hash of the state keep it as a whole, and who inherits a contact inherits it.
+// statics (which start with new ones), checkpoints and the hash of the state keep it as a whole, and who inherits a contact inherits it.
 #pragma once
 
 #include <array>

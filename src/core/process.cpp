@@ -71,10 +71,6 @@ long peak_memory() {
   return status_of_process("VmHWM:");
 }
 
-long resident_memory() {
-  return status_of_process("VmRSS:");
-}
-
 long memory_of_program() {
   return memory_at_start;
 }

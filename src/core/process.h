@@ -11,9 +11,7 @@ double process_cpu_time();
 double wall_time();
 /// [bytes] Largest resident memory since the program was loaded; 0 where /proc does not tell.
 long peak_memory();
-/// [bytes] Resident memory now; 0 where /proc does not tell.
-long resident_memory();
-/// [bytes] The same when the program began: its code and libraries, as far as they were read.
+/// [bytes] Resident memory when the program began: its code and libraries, as far as they were read.
 long memory_of_program();
 /// [bytes] What this process can still have: of the machine, of its control group and below the limit on its addresses (ulimit -v); the largest
 /// number where none of them is known.

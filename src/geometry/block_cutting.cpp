@@ -158,16 +158,24 @@ class Cut {
     result_.overlaps.assign(pairs.begin(), pairs.end());
   }
 
-  /// What is left of the stub at an end that met what it was meant to is as long as the reach, or twice that if it fell short; longer ends dangle.
-  void count_dangling_ends() {
-    std::vector<std::array<int, 2>> edges_at(nodes_.size(), {-1, -1});
-    std::vector<int> degree(nodes_.size(), 0);
+  struct EdgesAtNodes {
+    std::vector<std::array<int, 2>> first_two;  ///< -1 where there are fewer
+    std::vector<int> degree;
+  };
+  EdgesAtNodes edges_at_nodes() const {
+    EdgesAtNodes at{std::vector<std::array<int, 2>>(nodes_.size(), {-1, -1}), std::vector<int>(nodes_.size(), 0)};
     for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
       for (const int node : {edges_[e].from, edges_[e].to}) {
-        if (degree[node] < 2) edges_at[node][degree[node]] = e;
-        ++degree[node];
+        if (at.degree[node] < 2) at.first_two[node][at.degree[node]] = e;
+        ++at.degree[node];
       }
     }
+    return at;
+  }
+
+  /// What is left of the stub at an end that met what it was meant to is as long as the reach, or twice that if it fell short; longer ends dangle.
+  void count_dangling_ends() {
+    const auto [edges_at, degree] = edges_at_nodes();
     for (int end = 0; end < static_cast<int>(nodes_.size()); ++end) {
       if (degree[end] != 1) continue;
       int node = end;
@@ -219,16 +227,10 @@ class Cut {
   /// Where several joints run along each other the first one counts. A label that changes a little beside a meeting changes there: what lies between
   /// would be an edge so short that no drawing means it.
   void label_edges() {
-    std::vector<std::array<int, 2>> edges_at(nodes_.size(), {-1, -1});
-    std::vector<int> degree(nodes_.size(), 0);
-    for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
-      Edge& edge = edges_[e];
+    for (Edge& edge : edges_) {
       if (!edge.boundary) edge.label = labels_[owners_[edge.owners]];
-      for (const int node : {edge.from, edge.to}) {
-        if (degree[node] < 2) edges_at[node][degree[node]] = e;
-        ++degree[node];
-      }
     }
+    const auto [edges_at, degree] = edges_at_nodes();
     for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
       Edge& edge = edges_[e];
       if (edge.boundary || length(edge) > limits_.end_reach + tolerance::shortest_edge_m) continue;

@@ -1,5 +1,5 @@
-// Contact enforcement: how one step is solved so that contacts carry their forces. `soft`, `hard` and `shi` stand behind this interface; registry.h
-// lists them.
+// Contact enforcement: how one step is solved so that contacts carry their forces. `soft`, `hard`, `shi` and `dem` stand behind this interface;
+// registry.h lists them.
 #pragma once
 
 #include <fmt/format.h>

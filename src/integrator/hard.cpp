@@ -40,8 +40,6 @@ namespace {
 /// first is as high as Newton takes without more iterations; where it gets lost among the contact states, the softer ones are easier. (1,000 random
 /// small scenes and seven slopes and piles: as much and as often to the end with 100 between the first two.)
 constexpr std::array stiffness_over_inertia = {300.0, 30.0, 1.0};
-/// [-] Statics: springs of contacts that are short beside the others of their block, and of the stiffest joint, over the inertia.
-constexpr double least_of_short_contacts = stiffness_over_inertia[1];
 /// [-] Statics: by which springs are multiplied, one after the other as long as no passes hold the contacts. On the springs of soft joints a slope
 /// sinks by metres in the first pass, and the blocks do not fit each other where that has turned them.
 constexpr std::array stiffer_static_springs = {1.0, 100.0};
@@ -159,7 +157,8 @@ class Hard final : public Enforcement {
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       const Contact& contact = problem.contacts[c];
       const double relative = problem.joints.joint(contact.joint).normal_stiffness / groups.stiffest_joint(contact);
-      const double least = stiffer * least_of_short_contacts * relative * inertia_at(problem, contact);
+      // Contacts that are short beside the others of their block have springs as in motion, the first of those that Newton takes more easily.
+      const double least = stiffer * stiffness_over_inertia[1] * relative * inertia_at(problem, contact);
       springs_[c] = hard_springs_of_joint(problem, contact, stiffer * groups.factor(contact), least);
     }
   }

@@ -22,12 +22,17 @@ std::string integrator_name(const MethodInput& method) {
   return method.integrator.value_or(method.theta ? "theta" : default_integrator);
 }
 
+void forget_integrator(MethodInput& method) {
+  method.integrator.reset();
+  method.theta.reset();
+  method.rho_inf.reset();
+  method.dissipation.reset();
+}
+
 MethodInput method_at_first(const MethodInput& method) {
   MethodInput first = method;
+  forget_integrator(first);
   first.integrator = method.first_integrator;
-  first.theta.reset();
-  first.rho_inf.reset();
-  first.dissipation.reset();
   return first;
 }
 

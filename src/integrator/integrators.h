@@ -35,6 +35,9 @@ const std::vector<IntegratorEntry>& integrators();
 /// method.integrator; where it is absent "theta" if there is a method.theta, else the default.
 std::string integrator_name(const MethodInput& method);
 
+/// Takes the integrator and its parameters out of a method: what then steps is the default.
+void forget_integrator(MethodInput& method);
+
 /// With the first integrator of the method, and what it takes where the scene does not say, instead of the other one.
 MethodInput method_at_first(const MethodInput& method);
 

@@ -28,14 +28,10 @@ namespace {
 
 using nlohmann::json;
 
-/// The mechanism of a factor of safety as blocks.csv has it.
-constexpr const char* mechanism_state = "failed";
 /// [-] Of the size of the median block: a joint that has opened or slipped by more is no line any more, the gap itself is to be seen.
 constexpr double widest_drawn_opening = 0.1;
 /// [-] Of the widest opening that is drawn as a line: what is open by less is drawn thin.
 constexpr double slight_part_of_opening = 0.01;
-/// [-] Two contacts whose lengths add up to their distance to this accuracy are the ends of one face.
-constexpr double accuracy_of_lengths = 0.1;
 /// [-] Of the largest displacement of the mechanism: what opens or slips by less has been moved by rounding.
 constexpr double noticeable_part_of_mechanism = 0.01;
 

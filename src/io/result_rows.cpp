@@ -30,8 +30,12 @@ std::vector<ContactRow> contact_rows(const StateTable& table, const std::string&
   return contacts;
 }
 
+StateTable crack_table(const std::string& path) {
+  return {path, {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m", "joint"}};
+}
+
 std::vector<CrackRow> crack_rows(const std::string& path, const std::string& state, const BlockIndex& blocks) {
-  const StateTable table(path, {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m", "joint"});
+  const StateTable table = crack_table(path);
   std::vector<CrackRow> cracks;
   table.rows(state, [&](const Row& row) {
     cracks.push_back({blocks.of(row, 0),

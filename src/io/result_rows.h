@@ -30,10 +30,16 @@ struct CrackRow {
 
 StateTable contact_table(const std::string& path);
 std::vector<ContactRow> contact_rows(const StateTable& table, const std::string& state, const BlockIndex& blocks);
+StateTable crack_table(const std::string& path);
 std::vector<CrackRow> crack_rows(const std::string& path, const std::string& state, const BlockIndex& blocks);
 
 /// [-] Of the size of the median block: an opening below is the rounding of places, six orders above that of a double.
 inline constexpr double rounding_of_openings = 1e-9;
+
+/// The mechanism of a factor of safety as blocks.csv has it.
+inline constexpr const char* mechanism_state = "failed";
+/// [-] Two contacts whose lengths add up to their distance to this accuracy are the ends of one face.
+inline constexpr double accuracy_of_lengths = 0.1;
 
 /// How a block has moved from one polygon to another, as a rigid body.
 struct Placement {

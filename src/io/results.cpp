@@ -13,6 +13,7 @@
 #include "openclose/core/process.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/io/state_hash.h"
+#include "openclose/io/text_files.h"
 #include "openclose/scene/keys.h"
 #include "openclose/scene/names.h"
 #include "openclose/version.h"
@@ -50,17 +51,6 @@ const char* word_of(TrialOutcome outcome) {
 template <typename... Arguments>
 void print(std::string& rows, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   fmt::format_to(std::back_inserter(rows), format, std::forward<Arguments>(arguments)...);
-}
-
-/// A text field: quoted if it holds what would break the row.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
 }
 
 }  // namespace
@@ -132,7 +122,7 @@ HistoryFile::HistoryFile(const OutputFolder& folder, const RestartPoint* restart
 
 void HistoryFile::add(double time, const std::vector<PointMotion>& motions) {
   for (const PointMotion& m : motions) {
-    fmt::print(file_, "{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", time, field(m.name), m.displacement.x(), m.displacement.y(),
+    fmt::print(file_, "{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", time, csv_field(m.name), m.displacement.x(), m.displacement.y(),
                m.rotation, m.velocity.x(), m.velocity.y(), m.angular_velocity);
   }
   require_written();
@@ -156,7 +146,7 @@ void BlocksFile::add(const std::string& state, const Scene& scene, const BlockSy
     const auto& block = system.block(b);
     for (int i = 0; i < block.vertex_count; ++i) {
       const Vec2 p = system.position(b, block.first_vertex + i) + system.origin();
-      print(rows, "{},{},{},{},{}\n", state, field(scene.blocks[b].name), i, p.x(), p.y());
+      print(rows, "{},{},{},{},{}\n", state, csv_field(scene.blocks[b].name), i, p.x(), p.y());
     }
   }
   file_ << rows;
@@ -173,8 +163,8 @@ void ContactsFile::add(const std::string& state, const Scene& scene, const Block
   for (const Contact& c : contacts) {
     const Vec2 p = system.position(c.vertex_block, c.vertex) + system.origin();
     const Vec2 n = ContactKinematics(system, c, still, still).normal;
-    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state, field(scene.blocks[c.vertex_block].name), field(scene.blocks[c.edge_block].name),
-          p.x(), p.y(), n.x(), n.y(), c.length, c.gap, c.normal_force, c.shear_force, name_of(c.status));
+    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state, csv_field(scene.blocks[c.vertex_block].name),
+          csv_field(scene.blocks[c.edge_block].name), p.x(), p.y(), n.x(), n.y(), c.length, c.gap, c.normal_force, c.shear_force, name_of(c.status));
   }
   file_ << rows;
   require_written();
@@ -190,7 +180,7 @@ void BlockStatesFile::add_place(std::string& rows, const std::string& state, con
                                 int b) const {
   const Vec2 p = system.centroid(b) + system.origin();
   const auto& d = system.displacement(b);
-  print(rows, "{},{},{},{},{},{},{},{}", state, time, field(scene.blocks[b].name), p.x(), p.y(), d[0], d[1], Motion::rotation(d));
+  print(rows, "{},{},{},{},{},{},{},{}", state, time, csv_field(scene.blocks[b].name), p.x(), p.y(), d[0], d[1], Motion::rotation(d));
 }
 
 void BlockStatesFile::add(const std::string& state, const Simulation& simulation) {
@@ -223,9 +213,9 @@ void CracksFile::add(const std::string& state, const Scene& scene, const BlockSy
   std::string rows;
   for (const DrawnJoint& joint : joints_) {
     const JointMotion m = joint_motion(joint, system, direction);
-    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", state, field(scene.blocks[joint.block_a].name), field(scene.blocks[joint.block_b].name),
-          m.from.middle.x(), m.from.middle.y(), m.to.middle.x(), m.to.middle.y(), (joint.to_b - joint.from_b).norm(), m.from.opening, m.to.opening,
-          m.from.slip, m.to.slip, field(name_of_joint(scene, joint)));
+    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", state, csv_field(scene.blocks[joint.block_a].name),
+          csv_field(scene.blocks[joint.block_b].name), m.from.middle.x(), m.from.middle.y(), m.to.middle.x(), m.to.middle.y(),
+          (joint.to_b - joint.from_b).norm(), m.from.opening, m.to.opening, m.from.slip, m.to.slip, csv_field(name_of_joint(scene, joint)));
   }
   file_ << rows;
   require_written();
@@ -236,7 +226,7 @@ ContactHistoryFile::ContactHistoryFile(const OutputFolder& folder, const Restart
 
 void ContactHistoryFile::add(double time, const std::vector<ContactMotion>& motions) {
   for (const ContactMotion& m : motions) {
-    fmt::print(file_, "{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{},{}\n", time, field(m.name), m.normal_force, m.shear_force, m.gap, m.slip,
+    fmt::print(file_, "{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{},{}\n", time, csv_field(m.name), m.normal_force, m.shear_force, m.gap, m.slip,
                name_of(m.status), m.closed);
   }
   require_written();
@@ -276,7 +266,7 @@ void write_block_properties(const OutputFolder& folder, const Scene& scene, cons
   file << "block,material,fixed,area_m2,mass_kg\n";
   for (int b = 0; b < system.block_count(); ++b) {
     const BlockInput& block = scene.blocks[b];
-    fmt::print(file, "{},{},{},{:.17g},{:.17g}\n", field(block.name), field(scene.materials[block.material].name), block.fixed ? 1 : 0,
+    fmt::print(file, "{},{},{},{:.17g},{:.17g}\n", csv_field(block.name), csv_field(scene.materials[block.material].name), block.fixed ? 1 : 0,
                system.block(b).area, system.block(b).mass[0]);
   }
   finish(file, folder.path_of("block_properties.csv"));
@@ -286,7 +276,7 @@ void write_mechanism(const OutputFolder& folder, const Scene& scene, const std::
   std::ofstream file = folder.open("mechanism.csv");
   file << "block,area_m2,x_m,y_m,velocity_x,velocity_y,rotation_per_m\n";
   for (const FailingBlock& b : blocks) {
-    fmt::print(file, "{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", field(scene.blocks[b.block].name), b.area, b.centroid.x(),
+    fmt::print(file, "{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", csv_field(scene.blocks[b.block].name), b.area, b.centroid.x(),
                b.centroid.y(), b.velocity.x(), b.velocity.y(), b.rotation);
   }
   finish(file, folder.path_of("mechanism.csv"));
@@ -296,7 +286,7 @@ void write_trials(const OutputFolder& folder, const std::vector<StrengthTrial>& 
   std::ofstream file = folder.open("trials.csv");
   file << factor << ",stage,stable,criterion,steps,displacement_m\n";
   for (const StrengthTrial& t : trials) {
-    fmt::print(file, "{:.17g},{},{},{},{},{:.17g}\n", t.srf, t.stage, word_of(t.outcome), field(t.criterion), t.steps, t.displacement);
+    fmt::print(file, "{:.17g},{},{},{},{},{:.17g}\n", t.srf, t.stage, word_of(t.outcome), csv_field(t.criterion), t.steps, t.displacement);
   }
   finish(file, folder.path_of("trials.csv"));
 }
@@ -304,7 +294,7 @@ void write_trials(const OutputFolder& folder, const std::vector<StrengthTrial>& 
 void write_curve(const OutputFolder& folder, const std::vector<CurvePoint>& curve) {
   std::ofstream file = folder.open("curve.csv");
   file << "srf,point,displacement_m\n";
-  for (const CurvePoint& p : curve) fmt::print(file, "{:.17g},{},{:.17g}\n", p.srf, field(p.point), p.displacement);
+  for (const CurvePoint& p : curve) fmt::print(file, "{:.17g},{},{:.17g}\n", p.srf, csv_field(p.point), p.displacement);
   finish(file, folder.path_of("curve.csv"));
 }
 
@@ -315,7 +305,7 @@ void write_milestones(const OutputFolder& folder, const std::vector<Milestone>& 
     if (m.time) {
       fmt::print(file, "{:.17g},{:.17g},{:.17g},{:.17g},\n", m.displacement, *m.time, m.cpu_of_motion, m.cpu_of_program);
     } else {
-      fmt::print(file, "{:.17g},,,,{}\n", m.displacement, field(m.reason));
+      fmt::print(file, "{:.17g},,,,{}\n", m.displacement, csv_field(m.reason));
     }
   }
   finish(file, folder.path_of("milestones.csv"));

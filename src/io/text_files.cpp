@@ -71,6 +71,16 @@ class Unfinished {
 
 }  // namespace
 
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
 void require_replaceable(const std::vector<TextFile>& files) {
   for (const TextFile& file : files) require_replaceable(file);
 }

@@ -16,6 +16,9 @@ struct TextFile {
   Seal seal = Seal::none;      ///< its last line, which is added to the text
 };
 
+/// A field of a row of a table: quoted if it holds what would break the row.
+std::string csv_field(const std::string& text);
+
 /// Writes whole files, with the folders they need: all of them, or none and no folder. Old ones are replaced only when all new ones are complete;
 /// until then these have ".part" after their names. Throws InputError if a file cannot be made, if something with its name and ".part" is there, or
 /// if it is there and is not as openclose has written it, which its seal tells, or its first line where it has none; WriteError if one cannot be

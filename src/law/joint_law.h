@@ -19,9 +19,14 @@
 
 namespace openclose {
 
-/// [-] How much slip has taken of what it takes from a bonded joint, 0 to 1: linear slip weakening.
+/// [-] What a slip [m] takes of all that slip can take from a bonded joint that weakens along it, however much that has lost: linear slip weakening.
+inline double weakening_by(const JointProperties& joint, double slip) {
+  return slip / joint.slip_weakening_distance;
+}
+
+/// [-] How much slip has taken of what it takes from a bonded joint, 0 to 1.
 inline double weakening(const JointProperties& joint, const JointState& state) {
-  return joint.slip_weakening_distance > 0.0 ? std::min(1.0, state.slip / joint.slip_weakening_distance) : 0.0;
+  return joint.slip_weakening_distance > 0.0 ? std::min(1.0, weakening_by(joint, state.slip)) : 0.0;
 }
 
 /// Strength of one contact: Mohr-Coulomb with tension cut-off, per metre of thickness.

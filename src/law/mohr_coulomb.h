@@ -1,4 +1,4 @@
-// Mohr-Coulomb with tension cut-off: what a contact carries of what its springs and dashpots try to. The one place of these formulas, for one contact
+// Mohr-Coulomb with tension cut-off: what a contact carries of what its springs and dashpots try to. The place of these formulas, for one contact
 // (Number = double) and for four (Number = Lanes, in source files that are compiled without the warning about how vectors are passed); in both by the
 // same operations in the same order.
 #pragma once

@@ -109,12 +109,4 @@ OPENCLOSE_FOR_WIDE_REGISTERS_TOO void BlockMatrix::multiply_rows(int first, int 
   }
 }
 
-Eigen::MatrixXd BlockMatrix::dense() const {
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(unknowns(), unknowns());
-  for (int i = 0; i < rows(); ++i) {
-    for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) a.block<dofs, dofs>(dofs * i, dofs * columns_[s]) = values_[s];
-  }
-  return a;
-}
-
 }  // namespace openclose

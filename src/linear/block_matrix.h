@@ -45,7 +45,6 @@ class BlockMatrix {
 
   void use_threads(int threads) { threads_ = threads; }  ///< for products; they are the same to the last bit
   Eigen::VectorXd multiply(const Eigen::VectorXd& x) const;
-  Eigen::MatrixXd dense() const;
   std::size_t bytes() const { return bytes_of(row_start_, columns_, diagonal_, values_); }
 
  private:

@@ -2,8 +2,8 @@
 // block; all forces per metre of thickness, as (force x, force y, moment about the centroid) [N, N, N m].
 //
 // A new kind of force is an input in scene/force_inputs.* and a class in force_elements.cpp. Solvers ask for forces and derivatives, the ledger for
-// energy, statics for the force and the springs at small displacements; only drawings, check.cpp of scene/ and the words on loose blocks know what a
-// support is.
+// energy, statics for the force and the springs at small displacements; only drawings, check.cpp of scene/ and the words on loose blocks know what
+// holds and what loads.
 #pragma once
 
 #include <array>

@@ -25,12 +25,8 @@ namespace {
 
 using nlohmann::json;
 
-/// The mechanism of a factor of safety.
-constexpr const char* mechanism_state = "failed";
 /// [-] Openings and slips below this part of the largest one are thinner than a line can be drawn.
 constexpr double least_drawn_part = 0.005;
-/// [-] Two contacts whose lengths add up to their distance to this accuracy are the ends of one face.
-constexpr double accuracy_of_lengths = 0.1;
 
 struct ContactRow {
   std::int32_t a = 0, b = 0;
@@ -56,8 +52,7 @@ class PageData {
                                                "velocity_y_m_per_s", "angular_velocity_rad_per_s", "time_s"}),
         contacts_(path_of("contacts.csv"),
                   {"block_a", "block_b", "x_m", "y_m", "normal_x", "normal_y", "length_m", "gap_m", "normal_force_n", "shear_force_n", "status"}),
-        cracks_(path_of("cracks.csv"),
-                {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m", "joint"}) {}
+        cracks_(crack_table(path_of("cracks.csv"))) {}
 
   json data() {
     json page;

@@ -69,14 +69,14 @@ inline constexpr std::array static_solver_words{
 
 inline constexpr double default_rho_inf = 0.5;  ///< [-] of MethodInput::rho_inf
 
-/// How contacts are enforced and steps are taken.
+/// How contacts are enforced and steps are taken: [method], and most of [solver].
 struct MethodInput {
-  std::string contact = "soft";  ///< name in the registry of enforcements (integrator/registry.h looks it up) or dem
+  std::string contact = "soft";  ///< name in the registry of enforcements (integrator/registry.h looks it up)
   SourceLocation contact_where;  ///< for the error of an unknown name
   std::optional<std::string>
-      integrator;                 ///< soft: name in the list of integrators (analysis looks it up); absent: theta if there is one, else the default
-  std::optional<double> theta;    ///< [-] theta: 1: Newmark (1/2, 1), Shi's; 1/2: trapezoid (Newmark (1/4, 1/2))
-  std::optional<double> rho_inf;  ///< [-] generalized_alpha: spectral radius at infinite frequency; absent: default_rho_inf
+      integrator;  ///< soft: name in the list of integrators (integrators.h looks it up); absent: theta if there is one, else the default
+  std::optional<double> theta;                  ///< [-] theta: 1: Newmark (1/2, 1), Shi's; 1/2: trapezoid (Newmark (1/4, 1/2))
+  std::optional<double> rho_inf;                ///< [-] generalized_alpha: spectral radius at infinite frequency; absent: default_rho_inf
   std::optional<double> dissipation;            ///< [-] path_average: see Soft; absent: none
   std::optional<std::string> first_integrator;  ///< soft: the integrator of steps that begin before the next one; absent: there are none
   double first_integrator_time = 0.0;           ///< [s]

@@ -9,7 +9,7 @@
 namespace openclose {
 namespace {
 
-/// Unit of time: with the inertia of assign_inertia() no frequency is above 1, so that this is half the critical step. A contact that closes in a
+/// Unit of time: with the inertia of the constructor no frequency is above 1, so that this is half the critical step. A contact that closes in a
 /// step then returns at most what it has taken.
 constexpr double time_step = 1.0;
 constexpr long steps_between_checks = 100;

@@ -12,6 +12,7 @@
 #include "openclose/analysis/strength_reduction.h"
 #include "openclose/core/error.h"
 #include "openclose/core/files.h"
+#include "openclose/io/text_files.h"
 #include "openclose/scene/reader.h"
 #include "openclose/study/plot.h"
 #include "openclose/study/quantity.h"
@@ -23,14 +24,6 @@ using nlohmann::json;
 
 std::string value_of(const std::string& assignment) {
   return assignment.substr(assignment.find('=') + 1);
-}
-
-/// A text with a comma or a quote in quotes.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
 }
 
 std::string number_at(const json& summary, const char* key) {
@@ -58,15 +51,15 @@ class Answers {
 
   std::string columns() const {
     std::string text;
-    for (const Variation& variation : order_.variations) text += field(variation.key) + ",";
+    for (const Variation& variation : order_.variations) text += csv_field(variation.key) + ",";
     text += is_factor_ ? std::string(factor_) + ",failed_at,verdict,limit_analysis,failing_blocks,failing_area_m2,"
-                       : field(order_.quantity) + ",time_s,ended_by,";
+                       : csv_field(order_.quantity) + ",time_s,ended_by,";
     return text + last_columns + "\n";
   }
 
   std::string row(const Case& one, const CaseResult& result) const {
     std::string text;
-    for (std::size_t k = 0; k < order_.variations.size(); ++k) text += field(value_of(one.overrides[k])) + ",";
+    for (std::size_t k = 0; k < order_.variations.size(); ++k) text += csv_field(value_of(one.overrides[k])) + ",";
     const json summary = result.summary.empty() ? json::object() : json::parse(result.summary);
     text += is_factor_ ? factor(summary) : motion(summary, one, result);
     double cpu = 0.0;
@@ -74,7 +67,7 @@ class Answers {
       for (const json& part : summary.at("cpu_s")) cpu += part.get<double>();
     }
     text += fmt::format("{},{:.6g},{},{},{}\n", summary.contains("warnings") ? std::to_string(summary.at("warnings").size()) : "", cpu,
-                        status_word(result.status), field(result.message), field(one.name));
+                        status_word(result.status), csv_field(result.message), csv_field(one.name));
     return text;
   }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <fstream>
 #include <memory>
 #include <vector>
 
@@ -12,6 +13,17 @@
 #include "support/sanitized.h"
 
 using namespace openclose;
+
+namespace {
+
+/// [bytes] Resident memory now; 0 where /proc does not tell.
+[[maybe_unused]] long resident_memory() {
+  std::ifstream sizes("/proc/self/statm");
+  long whole = 0, resident = 0;
+  return sizes >> whole >> resident ? resident * sysconf(_SC_PAGESIZE) : 0;
+}
+
+}  // namespace
 
 #if defined(__GLIBC__) && defined(MADV_POPULATE_WRITE) && !defined(OPENCLOSE_ADDRESS_SANITIZER)
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "openclose/linear/block_matrix.h"
+#include "support/dense.h"
 
 namespace openclose::test {
 
@@ -40,7 +41,7 @@ class RandomSystems {
       matrix.add(j, i, block());
     }
     for (int i = 0; i < matrix.rows(); ++i) matrix.add(i, i, block());
-    const double row_sum = matrix.dense().cwiseAbs().rowwise().sum().maxCoeff();
+    const double row_sum = dense(matrix).cwiseAbs().rowwise().sum().maxCoeff();
     for (int i = 0; i < matrix.rows(); ++i) matrix.add(i, i, dominance * row_sum * Eigen::Matrix3d::Identity());
   }
 

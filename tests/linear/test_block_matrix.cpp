@@ -3,6 +3,7 @@
 #include "openclose/linear/block_matrix.h"
 #include "random_systems.h"
 #include "support/catch.h"
+#include "support/dense.h"
 
 using namespace openclose;
 using openclose::test::RandomSystems;
@@ -34,7 +35,7 @@ TEST_CASE("the pattern holds the diagonal and both triangles, once each, and sta
     for (int s = matrix.row_start(i); s < matrix.row_start(i + 1); ++s) columns.push_back(matrix.column(s));
     CHECK(columns == expected[i]);
   }
-  CHECK(matrix.dense().isZero(0.0));
+  CHECK(test::dense(matrix).isZero(0.0));
 }
 
 TEST_CASE("a slot is that of one pair", "[linear][block_matrix]") {
@@ -59,9 +60,9 @@ TEST_CASE("blocks are added where they belong", "[linear][block_matrix]") {
   expected.block<3, 3>(0, 6) = numbered(1.0) + numbered(10.0);
   expected.block<3, 3>(6, 0) = numbered(100.0);
   expected.block<3, 3>(3, 3) = numbered(1000.0);
-  CHECK(matrix.dense() == expected);
+  CHECK(test::dense(matrix) == expected);
   matrix.set_zero();
-  CHECK(matrix.dense().isZero(0.0));
+  CHECK(test::dense(matrix).isZero(0.0));
   CHECK_NOTHROW(matrix.add(0, 2, numbered(1.0)));
 }
 
@@ -72,7 +73,7 @@ TEST_CASE("what is outside the pattern is refused, not written somewhere else", 
     CHECK_THROWS_AS(matrix.add(i, j, numbered(1.0)), std::logic_error);
     CHECK(matrix.find(i, j) == -1);
   }
-  CHECK(matrix.dense().isZero(0.0));
+  CHECK(test::dense(matrix).isZero(0.0));
 }
 
 TEST_CASE("a new pattern replaces the old one and changes the version", "[linear][block_matrix]") {
@@ -85,7 +86,7 @@ TEST_CASE("a new pattern replaces the old one and changes the version", "[linear
   matrix.set_pattern(5, {{3, 4}});
   CHECK(matrix.pattern_version() != version);
   CHECK(matrix.rows() == 5);
-  CHECK(matrix.dense().isZero(0.0));
+  CHECK(test::dense(matrix).isZero(0.0));
   CHECK(matrix.find(0, 1) == -1);
   CHECK(matrix.find(4, 3) >= 0);
 }
@@ -100,8 +101,8 @@ TEST_CASE("products are those of the dense matrix", "[linear][block_matrix]") {
     random.fill(matrix, pairs, 0.1);
     const Eigen::VectorXd x = random.vector(matrix.unknowns());
     // Sums of up to 60 products, in another order.
-    const double rounding = 60.0 * 2.2e-16 * matrix.dense().cwiseAbs().rowwise().sum().maxCoeff();
-    CHECK((matrix.multiply(x) - matrix.dense() * x).cwiseAbs().maxCoeff() <= rounding);
+    const double rounding = 60.0 * 2.2e-16 * test::dense(matrix).cwiseAbs().rowwise().sum().maxCoeff();
+    CHECK((matrix.multiply(x) - test::dense(matrix) * x).cwiseAbs().maxCoeff() <= rounding);
   }
 }
 
@@ -111,12 +112,12 @@ TEST_CASE("an eliminated unknown keeps its value and influences no other", "[lin
   BlockMatrix matrix;
   matrix.set_pattern(4, pairs);
   random.fill(matrix, pairs, 1.0);
-  Eigen::MatrixXd expected = matrix.dense();
+  Eigen::MatrixXd expected = test::dense(matrix);
   const int row = GENERATE(0, 1, 2, 3);
   const int k = GENERATE(0, 1, 2);
   expected.row(3 * row + k).setZero();
   expected.col(3 * row + k).setZero();
   expected(3 * row + k, 3 * row + k) = 1.0;
   matrix.eliminate(row, k);
-  CHECK(matrix.dense() == expected);
+  CHECK(test::dense(matrix) == expected);
 }

@@ -5,6 +5,7 @@
 #include "openclose/linear/solver.h"
 #include "random_systems.h"
 #include "support/catch.h"
+#include "support/dense.h"
 
 using namespace openclose;
 using openclose::test::grid;
@@ -31,9 +32,7 @@ BlockMatrix moving(BlockMatrix matrix, double inertia = 1.0) {
 class WatchedSolver : public LinearSolver {
  public:
   bool factor(const BlockMatrix& matrix, double kept_change) override { return real_->factor(matrix, kept_change); }
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
-    return real_->solve(right_side, reduction);
-  }
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override { return real_->solve(right_side, reduction); }
   void let_go() override {
     ++times_let_go;
     real_->let_go();
@@ -117,7 +116,7 @@ TEST_CASE("an estimating solver keeps all fill", "[linear][incomplete]") {
     for (int i = 0; i < loose.rows(); ++i) loose.add(i, i, (inertia - 1.0) * Eigen::Matrix3d::Identity());
     REQUIRE(solver->factor(loose));
     CHECK(solver->counters().pivots_lost == (inertia == 1e-1 ? 0 : inertia == 1e-5 ? 1 : 2));
-    const Eigen::VectorXd right_side = random.vector(loose.unknowns()), exact = loose.dense().lu().solve(right_side);
+    const Eigen::VectorXd right_side = random.vector(loose.unknowns()), exact = test::dense(loose).lu().solve(right_side);
     CHECK((solver->solve(right_side) - exact).norm() < 0.03 * exact.norm());
   }
   BlockMatrix singular = grid(4, 4);

@@ -8,6 +8,7 @@
 #include "openclose_traps.h"
 #include "random_systems.h"
 #include "support/catch.h"
+#include "support/dense.h"
 
 using namespace openclose;
 using openclose::test::RandomSystems;
@@ -19,7 +20,7 @@ using Solver = std::unique_ptr<LinearSolver>;
 /// Largest residual over what rounding may leave: |A| |x| times machine precision times the number of unknowns (N. J. Higham, Accuracy and stability
 /// of numerical algorithms, 2002, theorem 9.3, with the growth of partial pivoting left to the factor 10).
 double residual_over_rounding(const BlockMatrix& matrix, const Eigen::VectorXd& x, const Eigen::VectorXd& right_side) {
-  const Eigen::MatrixXd dense = matrix.dense();
+  const Eigen::MatrixXd dense = test::dense(matrix);
   const double scale = dense.cwiseAbs().rowwise().sum().maxCoeff() * x.cwiseAbs().maxCoeff();
   const double rounding = 10.0 * static_cast<double>(x.size()) * std::numeric_limits<double>::epsilon() * scale;
   return (dense * x - right_side).cwiseAbs().maxCoeff() / rounding;
@@ -82,7 +83,7 @@ TEST_CASE("all solvers solve random systems to rounding and agree", "[linear][so
     REQUIRE(sparse->factor(matrix));
     REQUIRE(block->factor(matrix));
     const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
-    const Eigen::VectorXd x = matrix.dense().partialPivLu().solve(right_side), y = sparse->solve(right_side), z = block->solve(right_side);
+    const Eigen::VectorXd x = test::dense(matrix).partialPivLu().solve(right_side), y = sparse->solve(right_side), z = block->solve(right_side);
     CHECK(residual_over_rounding(matrix, x, right_side) < 1.0);
     CHECK(residual_over_rounding(matrix, y, right_side) < 1.0);
     if (dominance <= 1.0) continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "openclose/integrator/step_equations.h"
+#include "support/dense.h"
 
 namespace openclose::test {
 
@@ -29,7 +30,7 @@ inline Eigen::MatrixXd stiffness_of(const StepProblem& problem, const std::vecto
   const Eigen::VectorXd start = Eigen::VectorXd::Zero(dofs * equations.rows());
   equations.evaluate(start);
   equations.assemble(start, true, false, tangent.slots(), tangent.matrix());
-  return tangent.matrix().dense();
+  return dense(tangent.matrix());
 }
 
 }  // namespace openclose::test
