@@ -32,7 +32,7 @@ NOT_RANDOM := setarch --addr-no-randomize
 VALGRIND := valgrind --quiet --error-exitcode=1 --leak-check=full --errors-for-leak-kinds=definite,indirect
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify examples handbook reproduce convergence stress regression bench bench-peers sanitize sanitize-threads memcheck compilers arm wasm fuzz mutants mutants-random clean verify-vtk verify-page verify-install verify-stops install uninstall packages clang-packages memcheck-packages arm-packages wasm-packages vtk-packages page-packages handbook-packages shell-packages stress-packages figure-packages bench-packages peer-packages
+.PHONY: help build test verify examples handbook reproduce convergence stress regression bench bench-code bench-peers sanitize sanitize-threads memcheck compilers arm wasm fuzz mutants mutants-random clean verify-vtk verify-page verify-install verify-stops install uninstall packages clang-packages memcheck-packages arm-packages wasm-packages vtk-packages page-packages handbook-packages shell-packages stress-packages figure-packages bench-packages peer-packages
 
 help: ## print the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-14s %s\n' "$$target" "$$text"; done
@@ -45,7 +45,7 @@ test: packages ## build and run the unit tests
 	@ctest --preset release --parallel $(JOBS)
 
 # The null solver comes first, so that the count of the real checks is the last line. The page is made of failed checks, too.
-verify: build stress-packages ## build, run the unit tests and the verification against closed forms (results/verification.md); the exit status says pass or fail
+verify: build bench-code stress-packages ## build, run the unit tests and the verification against closed forms (results/verification.md); the exit status says pass or fail
 	ctest --preset release --parallel $(JOBS)
 	@"$${PYTHON:-python3}" -m unittest discover -q -s stress
 	@mkdir -p results
@@ -107,6 +107,11 @@ regression: build stress-packages ## the fixed seeds of the random scenes, a min
 	@"$${PYTHON:-python3}" stress/stress.py --regression --jobs $(JOBS) --results results/regression
 
 # Always anew: a time is of today. The test is of the rule that nothing wins with a large error.
+# What only `make bench` runs keeps up with what it measures.
+bench-code: build
+	@scripts/install-packages build bench
+	@OPTIONS=-DOPENCLOSE_BENCH=ON scripts/build release openclose_bench
+
 bench: bench-packages ## run time beside error, cost by size, what skips save (results/bench.md); half an hour and more, BENCH=quick: a few minutes
 	@OPTIONS=-DOPENCLOSE_BENCH=ON scripts/build release openclose openclose_reference openclose_bench
 	@python=$$(scripts/find-python) && "$$python" -m unittest discover -q -s bench && "$$python" bench/bench.py --mode $(BENCH) --micro $(BUILD)/bench/openclose-bench

@@ -134,7 +134,7 @@ void detect(benchmark::State& state, bool search) {
   DetectionSkips skips;
   skips.search = !search;
   skips.narrow_phase = false;
-  Detector detector(simulation.scene().step.max_displacement, skips);
+  Detector detector(simulation.state().lengths.longest_displacement, skips);
   detector.update(simulation.system(), slope.simulation().joints(), contacts);
   for (auto _ : state) detector.update(simulation.system(), slope.simulation().joints(), contacts);
   say_size(state, slope);
