@@ -112,7 +112,7 @@ bench-code: build
 	@scripts/install-packages build bench
 	@OPTIONS=-DOPENCLOSE_BENCH=ON scripts/build release openclose_bench
 
-bench: bench-packages ## run time beside error, cost by size, what skips save (results/bench.md); half an hour and more, BENCH=quick: a few minutes
+bench: bench-packages ## run time beside error, cost by size, what skips save (results/bench.md); half an hour and more, BENCH=quick: some 20 minutes
 	@OPTIONS=-DOPENCLOSE_BENCH=ON scripts/build release openclose openclose_reference openclose_bench
 	@python=$$(scripts/find-python) && "$$python" -m unittest discover -q -s bench && "$$python" bench/bench.py --mode $(BENCH) --micro $(BUILD)/bench/openclose-bench
 

@@ -67,12 +67,13 @@ def run_studies(arguments: argparse.Namespace, bench: Bench, reference: Referenc
             begin = time.monotonic()
             print(f"{name} ...", flush=True)
             found[name] = study()
+            write_csv(bench.rows, arguments.results / "bench.csv")
             print(f"  {time.monotonic() - begin:.0f} s", flush=True)
     return found
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """The page is written last: where it is, everything is."""
+    """Rows are written after each study, the page last: where it is, everything is."""
     import figures_bench
     import page
 
@@ -82,7 +83,6 @@ def run(arguments: argparse.Namespace) -> None:
     description = machine.describe(arguments.openclose, commit(), arguments.mode)
     bench = Bench(openclose, arguments.mode)
     found = run_studies(arguments, bench, reference)
-    write_csv(bench.rows, arguments.results / "bench.csv")
     machine.write(description, arguments.results / "bench_machine.json")
     printed = read_printed()
     figures = figures_bench.draw(bench, found, printed, folder)
