@@ -106,12 +106,12 @@ stress: build stress-packages ## random scenes from seeds, judged by rules that 
 regression: build stress-packages ## the fixed seeds of the random scenes, a minute or two (results/regression/stress.md); exit status 1 for a false answer
 	@"$${PYTHON:-python3}" stress/stress.py --regression --jobs $(JOBS) --results results/regression
 
-# Always anew: a time is of today. The test is of the rule that nothing wins with a large error.
 # What only `make bench` runs keeps up with what it measures.
 bench-code: build
 	@scripts/install-packages build bench
 	@OPTIONS=-DOPENCLOSE_BENCH=ON scripts/build release openclose_bench
 
+# Always anew: a time is of today. The test is of the rule that nothing wins with a large error.
 bench: bench-packages ## run time beside error, cost by size, what skips save (results/bench.md); half an hour and more, BENCH=quick: some 20 minutes
 	@OPTIONS=-DOPENCLOSE_BENCH=ON scripts/build release openclose openclose_reference openclose_bench
 	@python=$$(scripts/find-python) && "$$python" -m unittest discover -q -s bench && "$$python" bench/bench.py --mode $(BENCH) --micro $(BUILD)/bench/openclose-bench

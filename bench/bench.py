@@ -67,13 +67,13 @@ def run_studies(arguments: argparse.Namespace, bench: Bench, reference: Referenc
             begin = time.monotonic()
             print(f"{name} ...", flush=True)
             found[name] = study()
-            write_csv(bench.rows, arguments.results / "bench.csv")
+            write_csv(bench.rows, arguments.results / "bench" / "rows.csv")
             print(f"  {time.monotonic() - begin:.0f} s", flush=True)
     return found
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Rows are written after each study, the page last: where it is, everything is."""
+    """Table and page are written last: where they are, everything is. A run that is stopped leaves the rows of its studies in bench/rows.csv."""
     import figures_bench
     import page
 
@@ -83,6 +83,7 @@ def run(arguments: argparse.Namespace) -> None:
     description = machine.describe(arguments.openclose, commit(), arguments.mode)
     bench = Bench(openclose, arguments.mode)
     found = run_studies(arguments, bench, reference)
+    write_csv(bench.rows, arguments.results / "bench.csv")
     machine.write(description, arguments.results / "bench_machine.json")
     printed = read_printed()
     figures = figures_bench.draw(bench, found, printed, folder)

@@ -1,6 +1,6 @@
-// Mohr-Coulomb with tension cut-off: what a contact carries of what its springs and dashpots try to. The place of these formulas, for one contact
-// (Number = double) and for four (Number = Lanes, in source files that are compiled without the warning about how vectors are passed); in both by the
-// same operations in the same order.
+// Mohr-Coulomb with tension cut-off: what a contact carries of what its springs and dashpots try to. Its only place but for increments at rest
+// (increment_packs.cpp, by the same ShearLimit), for one contact (Number = double) and four (Number = Lanes, in sources that are compiled without the
+// warning about how vectors are passed), by the same operations in the same order.
 #pragma once
 
 #include "openclose/core/packs.h"
