@@ -11,7 +11,7 @@ struct Box {
   Vec2 low = Vec2::Zero();   ///< [m]
   Vec2 high = Vec2::Zero();  ///< [m]
 
-  /// The smallest box around some points; there must be at least one.
+  /// The smallest box around some points; around none an empty one, of endless negative width.
   static Box around(const std::vector<Vec2>& points);
   static Box around(const Vec2& a, const Vec2& b) { return {a.cwiseMin(b), a.cwiseMax(b)}; }
 

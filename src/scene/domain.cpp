@@ -57,7 +57,6 @@ constexpr double widest_domain_m = 1e6;
 constexpr double longest_line_m = 2.0 * widest_domain_m;
 
 void require_size(const Value& vertices, const Polygon& outer) {
-  if (outer.empty()) return;  // nothing has no width, and is refused as an outline
   const Box box = Box::around(outer);
   const double width = (box.high - box.low).maxCoeff();
   if (width > widest_domain_m) vertices.fail(fmt::format("a domain {} m wide", width), fmt::format("domains at most {} m wide", widest_domain_m));

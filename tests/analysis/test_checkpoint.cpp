@@ -315,7 +315,7 @@ TEST_CASE("a run whose start is stopped while it settles goes on bit for bit", "
     CHECK_FALSE(resumed.has_start());
     const End end = end_of(again, resumed.go_on({}));
     CHECK(end.steps == expected.steps);
-    CHECK(end.state == expected.state);
+    CHECK((end.state == expected.state));
   }
 }
 

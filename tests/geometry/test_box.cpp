@@ -9,6 +9,7 @@ TEST_CASE("a box is the smallest one around its points", "[geometry][box]") {
   CHECK(box.high == Vec2(1.0, 7.0));
   CHECK(box.contains({1.0, 7.0}));
   CHECK_FALSE(box.contains({1.0, 7.1}));
+  CHECK(Box::around(std::vector<Vec2>{}).empty());
 }
 
 TEST_CASE("boxes overlap when they touch, and a margin decides how near is near", "[geometry][box]") {

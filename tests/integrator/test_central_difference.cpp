@@ -1,4 +1,4 @@
-// The explicit loop with its links four at a time against the same contacts one by one: the same to the last bit.
+// The explicit loop with its links four at a time against the same contacts one by one: the same to the last bit; and contacts that are gone.
 #include <algorithm>
 #include <vector>
 
@@ -268,4 +268,35 @@ TEST_CASE("links four at a time do what each does", "[integrator][explicit]") {
   if (scene.blocks.size() < 5) return;
   CHECK(changes > 20);
   CHECK(lost > 0);
+}
+
+TEST_CASE("contacts that are gone push no more", "[integrator][explicit]") {
+  Scene scene = test::column_of_blocks(1);
+  scene.method.contact = "dem";
+  Simulation simulation(scene);
+  constexpr double h = 1e-4;  // [s]
+  std::vector<Contact>& contacts = simulation.change_contacts();
+  const StepProblem problem = simulation.problem(h, false);
+  CentralDifference loop(tolerance::contact_skin_m);
+  loop.load(problem);
+  const double weight = loop.unbalanced_force(0.0);
+  const auto move = [&] { return loop.move(h, h, Vec2::Zero(), 1.0, 1.0, MassDamping::none, 0.0); };
+  for (int i = 0; i < 20; ++i) {
+    Move moved = move();
+    if (moved == Move::past_list) {
+      load_anew(loop, simulation, problem);
+      moved = move();
+    }
+    REQUIRE(moved == Move::taken);
+    loop.follow_contacts();
+  }
+  REQUIRE(loop.unbalanced_force(0.0) < 0.99 * weight);
+
+  const int listed = static_cast<int>(contacts.size());
+  contacts.clear();
+  loop.renew(problem, {{.pair = 0, .before = {0, listed}, .after = {0, 0}}});
+  CHECK(loop.unbalanced_force(0.0) == Approx(weight));
+  REQUIRE(move() == Move::taken);
+  loop.follow_contacts();
+  CHECK(loop.unbalanced_force(0.0) == Approx(weight));
 }
