@@ -275,9 +275,11 @@ void IncompleteLu::subtract_rows_above(int i) {
   for (int s = start; s < diagonal_[i]; ++s) {
     const int k = column_[s];
     const PaddedBlock left = working_row_[s - start] = product(working_row_[s - start], widen(value_[diagonal_[k]], worth_[k].pivot));
+    ++products_;
     for (int u = diagonal_[k] + 1; u < row_start_[k + 1]; ++u) {
       const int t = working_place_[column_[u]];
       if (t < 0) continue;
+      ++products_;
       const PaddedBlock part = product(left, widen(value_[u], worth_[k].above));
       for (int c = 0; c < dofs; ++c) working_row_[t].column[c] -= part.column[c];
     }
@@ -328,6 +330,7 @@ bool IncompleteLu::factor(const BlockMatrix& matrix) {
   }
   changed_.assign(rows(), anew ? 1 : 0);
   rows_kept_ = 0;
+  products_ = 0;
   for (int i = 0; i < rows(); ++i) {
     if (!anew && !subtracts_changed_row(i) && is_as_taken(matrix, i)) {
       ++rows_kept_;

@@ -47,6 +47,7 @@ class IncompleteLu {
   /// Of the analysed pattern. False if a pivot is singular or not finite in single precision; there is no factor then.
   bool factor(const BlockMatrix& matrix);
   int rows_kept() const { return rows_kept_; }  ///< by the last factor(); none of a whole factor
+  long products() const { return products_; }   ///< of two blocks, in the last factor()
   /// [-] Entry of the inverse of a pivot, over that of the diagonal block that it has come from, about: of a pivot that much is lost of its digits.
   double largest_inverse() const;
   /// About the inverse of the matrix times `right_side`, of which seven digits are read.
@@ -120,6 +121,7 @@ class IncompleteLu {
   std::vector<float> scale_;
   std::vector<char> changed_;  ///< by places in the factor: whether the row is another one than in the factor before
   int rows_kept_ = 0;
+  long products_ = 0;
   std::vector<int> working_place_;  ///< of a column in the row under work; -1 where it has none
   std::vector<PaddedBlock> working_row_;
   mutable std::vector<FloatLanes> solution_;  ///< a block row each, in the factor's order

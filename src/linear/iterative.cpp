@@ -79,7 +79,6 @@ class IncompleteSolver : public LinearSolver {
     }
     ++(incomplete_.analyse(matrix) ? counters_.symbolic : counters_.symbolic_skipped);
     ++counters_.incomplete;
-    direct_->let_go();  // several times as large as what takes its place
     count_work();
     if (!incomplete_.factor(matrix)) return give_up();
     single_.take(matrix, incomplete_.order());
@@ -94,7 +93,9 @@ class IncompleteSolver : public LinearSolver {
       counters_.krylov_iterations += result.iterations;
       if (result.x) {
         ++counters_.solves;
-        pause_ = 2 * result.iterations <= most_iterations() ? 1 : std::max(1, pause_ / 2);
+        const bool is_cheap = 2 * result.iterations <= most_iterations();
+        pause_ = is_cheap ? 1 : std::max(1, pause_ / 2);
+        if (is_cheap) direct_->let_go();  // several times as large as what has taken its place
         return std::move(*result.x);
       }
       if (!give_up()) return {};
@@ -142,7 +143,8 @@ class IncompleteSolver : public LinearSolver {
   int most_iterations() const {
     const double blocks = stored_blocks();
     const double products = blocks > 0.0 ? counted_products_ * std::pow(blocks / counted_blocks_, 1.5) : 0.0;
-    return iterations_of_a_factorisation(products, blocks + matrix_->row_start(matrix_->rows()), matrix_->rows());
+    return iterations_of_a_factorisation(std::max(0.0, products - static_cast<double>(incomplete_.products())),
+                                         blocks + matrix_->row_start(matrix_->rows()), matrix_->rows());
   }
 
   /// GMRES in single precision, as often as it takes for the residual in double precision.

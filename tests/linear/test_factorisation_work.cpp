@@ -94,6 +94,16 @@ TEST_CASE("blocks that come to hold on to each other have their factorisation co
   CHECK(solver->counters().krylov_given_up == 0);
 }
 
+TEST_CASE("what the incomplete factor has cost, GMRES has not", "[linear][factorisation_work]") {
+  // Narrow enough for an incomplete factor of half the products; with all of them GMRES would get there.
+  RandomSystems random(50);
+  const BlockMatrix narrow = wall(6, 600, 1e-1);
+  const auto solver = make_incomplete_solver(make_block_solver(), 0);
+  REQUIRE(solver->factor(narrow));
+  solver->solve(random.vector(narrow.unknowns()), 1e-3);
+  CHECK(solver->counters().krylov_given_up == 1);
+}
+
 TEST_CASE("a solver of no blocks is written and read", "[linear][factorisation_work]") {
   BlockMatrix none;
   none.set_pattern(0, {});
