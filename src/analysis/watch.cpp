@@ -59,13 +59,12 @@ double undetermined_length(const Simulation& simulation) {
   return std::max(stacked_blocks(simulation) * tolerated, tolerance::rounding_of_ways_m);
 }
 
-Polygon polygon(const BlockSystem& system, int b) {
+/// The corners of a block where it is, in the memory of others.
+void take_corners(const BlockSystem& system, int b, Polygon& corners) {
   const auto& block = system.block(b);
   const Vec2 centroid = system.centroid(b);
-  Polygon polygon;
-  polygon.reserve(block.vertex_count);
-  for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) polygon.push_back(centroid + system.arm(v));
-  return polygon;
+  corners.clear();
+  for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) corners.push_back(centroid + system.arm(v));
 }
 
 double perimeter(const Polygon& polygon) {
@@ -124,9 +123,11 @@ void Watch::find_widths(const Simulation& simulation) {
   const BlockSystem& system = simulation.system();
   widths_.clear();
   convex_.clear();
+  Polygon corners;
   for (int b = 0; b < system.block_count(); ++b) {
     const auto& block = system.block(b);
-    widths_.push_back(2.0 * block.area / perimeter(polygon(system, b)));
+    take_corners(system, b, corners);
+    widths_.push_back(2.0 * block.area / perimeter(corners));
     bool convex = true;
     for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) convex &= !system.is_reflex(v);
     convex_.push_back(convex);
@@ -150,8 +151,9 @@ std::string Watch::begin(const Simulation& simulation) {
     if (element->account() == ForceAccount::loads) weights += element->magnitude(start);
     supports += element->stored_energy(start);
   }
-  undetermined_energy_ = weights * undetermined_length(simulation);
-  groups_.begin(simulation, undetermined_length(simulation));
+  const double undetermined = undetermined_length(simulation);
+  undetermined_energy_ = weights * undetermined;
+  groups_.begin(simulation, undetermined);
   energy_at_start_ = kinetic + supports + simulation.state().stored_contact_energy();
   report_.available_energy = energy_at_start_;
   depth_at_start_ = std::numeric_limits<double>::infinity();  // rigid contacts begin with what the drawing has
@@ -184,12 +186,21 @@ std::string Watch::check(const Simulation& simulation, std::size_t first_pair, s
   if (std::string wrong = check_finite(simulation); !wrong.empty()) return wrong;
   follow_energy(simulation);
   // What is deepest in each other comes first: it is where energy comes from, too, and has the better remedy.
-  if (std::string wrong = check_contacts(simulation); !wrong.empty()) return wrong;
-  if (std::string wrong = check_overlaps(simulation, first_pair, pairs); !wrong.empty()) return wrong;
+  if (std::string wrong = check_places(simulation, first_pair, pairs); !wrong.empty()) return wrong;
   if (std::string wrong = check_energy(simulation); !wrong.empty()) return wrong;
   if (std::string wrong = check_groups(simulation); !wrong.empty()) return wrong;
   if (std::string wrong = check_friction(simulation); !wrong.empty()) return wrong;
   return check_reach(simulation);
+}
+
+std::string Watch::check_places(const Simulation& simulation, std::size_t first_pair, std::size_t pairs) {
+  const StepCounters& counters = simulation.state().counters;
+  const std::pair moves(counters.steps - counters.still, simulation.state().changes);
+  if (moves == seen_after_) return {};
+  if (std::string wrong = check_contacts(simulation); !wrong.empty()) return wrong;
+  if (std::string wrong = check_overlaps(simulation, first_pair, pairs); !wrong.empty()) return wrong;
+  if (first_pair == 0 && pairs == simulation.state().detector.candidate_pairs().size()) seen_after_ = moves;
+  return {};
 }
 
 std::string Watch::check_finite(const Simulation& simulation) const {
@@ -369,12 +380,19 @@ std::string Watch::check_contacts(const Simulation& simulation) {
 std::string Watch::check_overlaps(const Simulation& simulation, std::size_t first_pair, std::size_t pairs) {
   const BlockSystem& system = simulation.system();
   const auto& candidates = simulation.state().detector.candidate_pairs();
+  Outline one, other;
+  int first_block = -1;
   for (std::size_t i = first_pair; i < std::min(first_pair + pairs, candidates.size()); ++i) {
     const auto [a, b] = candidates[i];
     const double narrower = std::min(widths_[a], widths_[b]), allowed = allowed_depth(simulation, narrower);
     const double apart = (system.centroid(a) - system.centroid(b)).norm();
     if (apart >= system.block(a).radius + system.block(b).radius) continue;
-    const double depth = overlap_depth_beyond(allowed, {polygon(system, a), convex_[a] != 0}, {polygon(system, b), convex_[b] != 0});
+    // Of a block all pairs come one after another.
+    if (a != std::exchange(first_block, a)) take_corners(system, a, one.corners);
+    take_corners(system, b, other.corners);
+    one.is_convex = convex_[a] != 0;
+    other.is_convex = convex_[b] != 0;
+    const double depth = overlap_depth_beyond(allowed, one, other);
     report_.overlap = std::max(report_.overlap, depth / narrower);
     report_.depth = std::max(report_.depth, depth);
     if (depth <= allowed) continue;

@@ -17,6 +17,7 @@
 
 #include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "openclose/analysis/energy_groups.h"
@@ -111,6 +112,8 @@ class Watch {
   /// How much energy a group has created.
   static std::string in_words(const Simulation& simulation, const EnergyGroups::Worst& worst);
   std::string check_reach(const Simulation& simulation);
+  /// Where blocks are: the contacts, and so many pairs from this one on. Nothing while all have been looked at since something has moved.
+  std::string check_places(const Simulation& simulation, std::size_t first_pair, std::size_t pairs);
   std::string check_contacts(const Simulation& simulation);
   std::string check_overlaps(const Simulation& simulation, std::size_t first_pair, std::size_t pairs);
   /// [J] Of which a part may be created: that of the energy there was, and more by what the method leaves undetermined.
@@ -127,6 +130,7 @@ class Watch {
   std::vector<Vec2> start_;           ///< [m] displacement of the blocks at the start
   double depth_at_start_ = 0.0;       ///< [m] of blocks in each other
   std::size_t next_pair_ = 0;
+  std::pair<long, long> seen_after_{-1, -1};  ///< steps in which something moved, and changes, when all places were looked at the last time
   EnergyGroups groups_;
   EnergyGroups::Worst worst_group_;       ///< so far
   std::vector<double> widths_;            ///< [m] of the blocks

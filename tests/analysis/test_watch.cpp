@@ -221,6 +221,7 @@ TEST_CASE("blocks that have passed into each other are found without a contact",
   Watched w(dropped_block(0.05));
   for (double depth : {0.1, 0.3}) {
     w.simulation.change_system().move_to(1, {0.0, -0.05 - depth, 0.0});
+    CHECK(w.watch.check(w.simulation).empty());  // not yet the turn of this pair
     // The width of the block is 2/3 m.
     const std::string found = w.watch.check_at_end(w.simulation);
     INFO(found);
@@ -284,4 +285,25 @@ TEST_CASE("with rigid contacts the watch looks after every step", "[analysis][wa
     const Simulation simulation(scene);
     CHECK(Watch().is_due(simulation, some_step) == (method == "hard"));
   }
+}
+
+TEST_CASE("what has moved since it was looked at is looked at again", "[analysis][watch]") {
+  Scene scene = test::block_on_base();
+  scene.method.contact = "hard";
+  scene.method.start = Start::settled;
+  Watched w(scene);
+  while (w.simulation.state().counters.still < 3) {
+    REQUIRE(w.simulation.advance(scene.step.dt));
+    REQUIRE(w.watch.check(w.simulation).empty());
+  }
+  SECTION("by a step") {
+    // As steps do: of all others it would be told. While none is counted, nothing can have moved.
+    const_cast<BlockSystem&>(w.simulation.system()).move_to(1, {0.0, -0.01, 0.0});
+    CHECK(w.watch.check(w.simulation).empty());
+    ++const_cast<StepCounters&>(w.simulation.state().counters).steps;
+  }
+  SECTION("otherwise") {
+    w.simulation.change_system().move_to(1, {0.0, -0.01, 0.0});
+  }
+  CHECK_THAT(w.watch.check(w.simulation), ContainsSubstring("blocks have passed into each other"));
 }
