@@ -215,6 +215,7 @@ TEST_CASE("named joints are lines of the drawing that move with a block", "[repo
   };
   CHECK_FALSE(page(bedding, bedding).contains("seams"));  // nothing to tell it from
   const json data = page(bedding, cross);
+  REQUIRE(data.contains("seams"));
   const json& seams = data.at("seams");
   const auto joints = numbers_in<std::int32_t>(seams.at("joints_i4"));
   const auto ends = numbers_in<float>(seams.at("ends_f4"));
