@@ -6,6 +6,7 @@
 #include "openclose/core/error.h"
 #include "openclose/io/folder_lock.h"
 #include "openclose/io/output_folder.h"
+#include "openclose/io/part_files.h"
 #include "openclose/io/results.h"
 #include "openclose/io/text_files.h"
 #include "support/catch.h"
@@ -19,6 +20,16 @@ TEST_CASE("an output folder is made with all above it", "[io][output_folder]") {
   const OutputFolder folder(place / "a/b/c");
   CHECK(std::filesystem::is_directory(place / "a/b/c"));
   CHECK(folder.path() == place / "a/b/c");
+}
+
+TEST_CASE("a new file is none that is there, nor one that a link leads to", "[io][output_folder]") {
+  const TemporaryFolder place;
+  place.write("mine.txt", "kept");
+  std::filesystem::create_symlink(place / "elsewhere.txt", place / "link.txt");
+  CHECK_FALSE(make_new(place / "mine.txt"));
+  CHECK_FALSE(make_new(place / "link.txt"));
+  CHECK_FALSE(std::filesystem::exists(place / "elsewhere.txt"));
+  CHECK(make_new(place / "new.txt"));
 }
 
 TEST_CASE("an existing output folder keeps its other files", "[io][output_folder]") {

@@ -89,10 +89,10 @@ TEST_CASE("slips without a common pace are counted as they are", "[statics][weak
     return slips.prolonged(first, second, is_balanced) == std::pair(first, second);
   };
   CHECK(stays(1.0, 1.0));
-  CHECK(stays(0.6, 0.3));          // one falls twice as fast as the other
-  CHECK(stays(0.9, 0.45));         // they run away
-  CHECK(stays(0.45, 0.2, false));  // blocks move
-  CHECK(stays(0.2, 0.1));
+  CHECK(stays(0.95, 0.55));       // one falls nearly twice as fast as the other
+  CHECK(stays(1.2, 0.7));         // they run away
+  CHECK(stays(0.9, 0.5, false));  // blocks move
+  CHECK(stays(0.6, 0.35));
   Slips at_once(0.0);
   CHECK(at_once.prolonged(1.0, 1.0) == std::pair(1.0, 1.0));
   CHECK(at_once.prolonged(0.5, -0.5) == std::pair(0.5, -0.5));
