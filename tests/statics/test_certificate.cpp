@@ -95,6 +95,20 @@ TEST_CASE("forces and accelerations prove that a block starts to slide", "[stati
   }
 }
 
+TEST_CASE("a motion into another block, or one that no load drives, is no mechanism", "[statics]") {
+  Scene ground = test::block_on_base();
+  ground.joints[0].friction_angle = 0.0;
+  const FrozenSystem system(ground), air(test::falling_block());
+  FrozenStrength strength(system, ground);
+  const Eigen::VectorXd down = Eigen::Vector3d(0.0, -1.0, 0.0), sideways = Eigen::Vector3d(1.0, 0.0, 0.0);
+  // Contacts that carry nothing leave the block its weight.
+  CHECK_FALSE(is_mechanism(system, strength, FrozenState(system), down));
+  CHECK(is_mechanism(air, FrozenStrength(air, test::falling_block()), FrozenState(air), down));
+  const RelaxationResult stands = relaxed(system, strength, 1.0);
+  REQUIRE(stands.end == RelaxationEnd::stable);
+  CHECK_FALSE(is_mechanism(system, strength, stands.state, sideways));
+}
+
 TEST_CASE("a block in the air is beyond all strength, one on the ground is not", "[statics]") {
   const Eigen::VectorXd down = Eigen::Vector3d(0.0, -1.0, 0.0);
   const Scene air = test::falling_block(), ground = test::block_on_base();
