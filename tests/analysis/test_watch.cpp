@@ -146,10 +146,12 @@ TEST_CASE("a block that another one strikes has its energy from there", "[analys
     INFO(method);
     Scene scene = test::scene_with({test::fixed_block("wall", test::rectangle(-60.0, 0.0, 1.0, 1.0)),
                                     test::free_block("struck", test::rectangle(0.0, 0.0, 1.0, 1.0)),
-                                    test::free_block("striking", test::rectangle(3.0, 0.0, 1.0, 1.0))});
+                                    test::free_block("striking", test::rectangle(3.0, 0.0, 1.0, 1.0)),
+                                    test::free_block("alone", test::rectangle(0.0, 60.0, 1.0, 1.0))});  // so that the others are not all
     scene.gravity.setZero();
     scene.blocks[1].velocity = {-0.1, 0.0};  // what has no energy at all is no group by which energy is measured
     scene.blocks[2].velocity = {-5.0, 0.0};
+    scene.blocks[3].velocity = {-0.1, 0.0};
     scene.method.contact = method;
     scene.joints[0].normal_stiffness = 1e7;
     scene.end_time = 2.0;
