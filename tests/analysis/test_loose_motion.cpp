@@ -1,4 +1,6 @@
 // Which blocks move, how, and what would hold them, in words.
+#include <Eigen/Geometry>
+
 #include "openclose/analysis/loose_blocks.h"
 #include "openclose/analysis/loose_motion.h"
 #include "openclose/analysis/run.h"
@@ -202,6 +204,18 @@ TEST_CASE("of many blocks three are named and the others counted", "[analysis][l
   }
   const std::string words = motion_in_words(scene, mechanism);
   CHECK_THAT(words, ContainsSubstring("; 2 more blocks move"));
+}
+
+TEST_CASE("a block that has turned far moves as in a steady turn about its centre", "[analysis][loose_motion]") {
+  const Scene scene = test::falling_block();
+  Simulation simulation(scene);
+  const double angle = 80.0 * test::degree;
+  const Vec2 arm(3.0, -2.0);  // of the centroid, from the centre of the turn
+  const Vec2 way = Eigen::Rotation2D<double>(angle) * arm - arm;
+  simulation.change_system().move_to(0, {way.x(), way.y(), angle});
+  const std::vector<FailingBlock> moved = moved_blocks(simulation);
+  REQUIRE(moved.size() == 1);
+  CHECK((moved[0].velocity / moved[0].rotation - Vec2(-arm.y(), arm.x())).norm() < 1e-12);
 }
 
 TEST_CASE("what does not stand as it is drawn is known without a run", "[analysis][loose_motion]") {

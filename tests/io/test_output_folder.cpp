@@ -208,6 +208,7 @@ TEST_CASE("a claimed folder keeps what is not ours", "[io][output_folder]") {
     folder.list_results();
     for (const char* name : {"report.html", "history.csv", "curve.csv"}) {
       place.write(name, "mine");
+      folder.list_results();
       CHECK_THROWS_WITH(OutputFolder(place.path()).claim({}), ContainsSubstring(std::string(name) + ": is there and has not been written by"));
       std::filesystem::remove(place / name);
     }
