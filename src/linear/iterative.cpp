@@ -21,7 +21,7 @@ namespace {
 /// beside the nine of a block. A block by a vector takes about as long as the product of two blocks in a factorisation, since both wait for memory
 /// (6 to 8 ns beside 7 to 8 on slopes of 4,568 and 9,745 rows and a wall of 10,040).
 ///
-/// \param products  of blocks, in the factorisation
+/// \param products  of blocks, in the factorisation, less those of the incomplete one
 int iterations_of_a_factorisation(double products, double blocks, int rows) {
   const double blocks_a_direction = 6.0 / 9.0 * rows;
   const double iterations = 2.0 * products / (blocks + std::sqrt(blocks * blocks + 2.0 * blocks_a_direction * products));

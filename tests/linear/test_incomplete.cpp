@@ -241,7 +241,7 @@ TEST_CASE("a factor that was let go of is made again", "[linear][incomplete]") {
   CHECK(solver->counters().rows_kept == 0);
 }
 
-TEST_CASE("a direct factor stays while tries are in vain, and goes once GMRES takes half of its time", "[linear][incomplete]") {
+TEST_CASE("a direct factor stays while tries are in vain, and goes once GMRES takes half of what it may", "[linear][incomplete]") {
   RandomSystems random(47);
   const BlockMatrix at_rest = grid(60, 50), in_motion = moving(at_rest);
   const Eigen::VectorXd right_side = random.vector(at_rest.unknowns());
@@ -259,7 +259,7 @@ TEST_CASE("a direct factor stays while tries are in vain, and goes once GMRES ta
   for (int i = 0; i < 6; ++i) solve(in_motion);
   CHECK(solver->counters().incomplete == 5);
   CHECK(direct.times_let_go == 2);
-  // With so little inertia GMRES gets there, but takes more than half of the time.
+  // With so little inertia GMRES gets there, but takes more than half of what it may.
   const BlockMatrix slow = moving(at_rest, 1e-1);
   for (int i = 0; i < 4; ++i) solve(slow);
   CHECK(solver->counters().incomplete == 9);
