@@ -234,6 +234,16 @@ TEST_CASE("blocks that have passed into each other are found without a contact",
   }
 }
 
+TEST_CASE("every pair of blocks is looked at where both are", "[analysis][watch]") {
+  Watched w(test::scene_with({test::fixed_block("base", test::rectangle(-10.0, -1.0, 20.0, 1.0)),
+                              test::free_block("left", test::rectangle(0.0, 0.0, 1.0, 1.0)),
+                              test::free_block("right", test::rectangle(1.0005, 0.0, 1.0, 1.0))}));
+  REQUIRE(w.simulation.state().detector.candidate_pairs().size() == 3);
+  CHECK(w.watch.check_at_end(w.simulation).empty());
+  w.simulation.change_system().move_to(2, {-0.3005, 0.0, 0.0});
+  CHECK_THAT(w.watch.check_at_end(w.simulation), ContainsSubstring("\"left\" and \"right\" are 0.3 m deep in each other"));
+}
+
 TEST_CASE("springs too soft for their blocks are refused, with the stiffness that would do", "[analysis][watch]") {
   Scene scene = test::block_on_base();
   scene.joints[0].normal_stiffness = scene.joints[0].shear_stiffness = 1e5;  // closure of 0.25 m at rest, 0.37 of the width
