@@ -74,7 +74,7 @@ bool follow(const Simulation& simulation, const StepResult& step, SettleCourse& 
   }
   ++result.steps;
   result.unbalanced_fraction = step.unbalanced_force / simulation.state().force_scale();
-  result.displacement = std::max(result.displacement, farthest_displacement(simulation.system(), course.start));
+  result.displacement = std::max(result.displacement, farthest_displacement(system, course.start));
   const bool is_balanced = result.unbalanced_fraction <= input.unbalanced_fraction;
   // Forces that were in balance with cohesion that is gone now are to be balanced anew.
   if (is_balanced && !step.lost_strength) {
