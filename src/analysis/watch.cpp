@@ -195,7 +195,7 @@ std::string Watch::check(const Simulation& simulation, std::size_t first_pair, s
 
 std::string Watch::check_places(const Simulation& simulation, std::size_t first_pair, std::size_t pairs) {
   const StepCounters& counters = simulation.state().counters;
-  const std::pair moves(counters.steps - counters.still, simulation.state().changes);
+  const long moves = counters.steps - counters.still + simulation.state().changes;  // neither ever falls
   if (moves == seen_after_) return {};
   if (std::string wrong = check_contacts(simulation); !wrong.empty()) return wrong;
   if (std::string wrong = check_overlaps(simulation, first_pair, pairs); !wrong.empty()) return wrong;

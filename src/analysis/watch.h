@@ -17,7 +17,6 @@
 
 #include <initializer_list>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "openclose/analysis/energy_groups.h"
@@ -130,7 +129,7 @@ class Watch {
   std::vector<Vec2> start_;           ///< [m] displacement of the blocks at the start
   double depth_at_start_ = 0.0;       ///< [m] of blocks in each other
   std::size_t next_pair_ = 0;
-  std::pair<long, long> seen_after_{-1, -1};  ///< steps in which something moved, and changes, when all places were looked at the last time
+  long seen_after_ = -1;  ///< steps in which something moved, and other changes, when all places were looked at the last time
   EnergyGroups groups_;
   EnergyGroups::Worst worst_group_;       ///< so far
   std::vector<double> widths_;            ///< [m] of the blocks

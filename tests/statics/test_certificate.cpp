@@ -98,12 +98,13 @@ TEST_CASE("forces and accelerations prove that a block starts to slide", "[stati
 TEST_CASE("a motion into another block, or one that no load drives, is no mechanism", "[statics]") {
   Scene ground = test::block_on_base();
   ground.joints[0].friction_angle = 0.0;
-  const FrozenSystem system(ground), air(test::falling_block());
+  const Scene falling = test::falling_block();
+  const FrozenSystem system(ground), air(falling);
   FrozenStrength strength(system, ground);
   const Eigen::VectorXd down = Eigen::Vector3d(0.0, -1.0, 0.0), sideways = Eigen::Vector3d(1.0, 0.0, 0.0);
   // Contacts that carry nothing leave the block its weight.
   CHECK_FALSE(is_mechanism(system, strength, FrozenState(system), down));
-  CHECK(is_mechanism(air, FrozenStrength(air, test::falling_block()), FrozenState(air), down));
+  CHECK(is_mechanism(air, FrozenStrength(air, falling), FrozenState(air), down));
   const RelaxationResult stands = relaxed(system, strength, 1.0);
   REQUIRE(stands.end == RelaxationEnd::stable);
   CHECK_FALSE(is_mechanism(system, strength, stands.state, sideways));
