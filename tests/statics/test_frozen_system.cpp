@@ -183,6 +183,16 @@ TEST_CASE("the joints between two blocks are sections, each along one line", "[s
     CHECK(size(system, system.sections()[0]) == Approx(2.0));
     for (const PlaceInJoint& place : system.sections()[0]) CHECK(place.filled == 0.0);
   }
+  SECTION("the same where all is one joint, whichever of the two contacts at a corner comes first") {
+    Scene scene = test::block_on_base();
+    scene.blocks[0].vertices = {{-10.0, -1.0}, {10.0, -1.0}, {10.0, 0.0}, {1.3, 0.0}, {0.4, 0.0}, {-10.0, 0.0}};
+    scene.blocks[1].vertices = {{0.0, 0.0}, {0.4, 0.0}, {1.3, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}};
+    if (GENERATE(false, true)) std::swap(scene.blocks[0], scene.blocks[1]);
+    const FrozenSystem system(scene);
+    REQUIRE(system.sections().size() == 1);
+    CHECK(size(system, system.sections()[0]) == Approx(2.0));
+    for (const PlaceInJoint& place : system.sections()[0]) CHECK(place.filled == 0.0);
+  }
   SECTION("the two legs of a gate are one section with a hole, a step in a floor makes two") {
     Scene scene = test::block_on_base();
     scene.blocks[1].vertices = {{0.0, 0.0}, {0.5, 0.0}, {0.5, 1.0}, {1.5, 1.0}, {1.5, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {0.0, 2.0}};
