@@ -119,6 +119,27 @@ StepSolution first_step(const Scene& scene, bool has_another_way = false) {
 
 }  // namespace
 
+TEST_CASE("what a step reduces is in motion the work of all residuals, at rest the largest of them", "[integrator][newton]") {
+  Probe probe(settled_scene(4));
+  std::mt19937 random(5);
+  for (const bool statics : {false, true}) {
+    const StepProblem problem = probe.simulation.problem(0.01, statics);
+    ContactTrial contacts;
+    StepEquations equations;
+    equations.prepare(problem, springs_in(probe.springs), contacts);
+    equations.evaluate(random_displacement(dofs * equations.rows(), small_move, random));
+    double work = 0.0;  // [J]
+    for (int row = 0; row < equations.rows(); ++row) {
+      const auto residual = equations.residual().segment<dofs>(dofs * row);
+      for (int u = 0; u < dofs; ++u) work += residual[u] * residual[u] / equations.blocks()[row].inertia[u];
+    }
+    const double norm = equations.residual_norm();
+    REQUIRE(std::isfinite(norm));
+    REQUIRE(norm > 1.0);
+    CHECK(equations.merit(norm) == Approx(statics ? norm : std::sqrt(work)));
+  }
+}
+
 TEST_CASE("Newton's stiffness is minus the derivative of its forces", "[integrator][newton]") {
   const int blocks = GENERATE(1, 2, 3, 4, 5);
   Probe probe(settled_scene(blocks));
