@@ -609,6 +609,26 @@ TEST_CASE("a needle's tip that has gone right through another tip is held by the
   CHECK(d.find(0, upper_side)->gap == Approx(-perpendicular(at(1.0, 25.5)).dot(tip)).margin(1e-12));
 }
 
+TEST_CASE("tips that have gone right through each other are held by one line, though both are behind two", "[contact][detection]") {
+  struct Tips {
+    double first, second;                    // [deg] of the block's two sides
+    double first_of_other, second_of_other;  // [deg] of the other's
+    Vec2 start, end;                         // [m] of its tip; the block's is the origin
+  };
+  const Tips t = GENERATE(values<Tips>({{49.6, 125.2, 335.9, 355.0, {-0.0111, 0.0066}, {-1.55e-4, 1.81e-4}},
+                                        {151.0, 214.1, 44.7, 94.1, {-0.0066, 0.0198}, {-2.53e-4, -2.3e-4}},
+                                        {174.8, 254.6, 131.6, 151.1, {0.0084, -0.0107}, {-2.6e-7, -8.35e-6}}}));
+  const auto at = [](double length, double angle) -> Vec2 { return length * Vec2(std::cos(angle * degree), std::sin(angle * degree)); };
+  Detection d(scene_with({free_block("block", {Vec2(0.0, 0.0), at(0.07, t.first), at(0.1, t.second)}),
+                          free_block("other", {t.start, t.start + at(0.2, t.first_of_other), t.start + at(0.1, t.second_of_other)})}));
+  d.move(1, t.end.x() - t.start.x(), t.end.y() - t.start.y());
+  d.update();
+  CAPTURE(t.first);
+  REQUIRE(d.contacts.size() == 1);
+  REQUIRE(d.find(0, 5) != nullptr);
+  CHECK(d.find(0, 5)->gap == Approx(-perpendicular(at(1.0, t.second_of_other)).dot(t.end)).margin(1e-12));
+}
+
 TEST_CASE("a needle that has come off the face that held it, behind its line, is held by the other block's tip", "[contact][detection]") {
   // The needle's tip (3) has slid down the face (0) of the other block to past its end and stands 37 micrometres behind its line, in no block any
   // more; the needle's upper side (5) has come behind the other block's tip (0).
