@@ -63,7 +63,8 @@ Scene cohesive_boxes() {
   constexpr double cell = 0.6, width = columns * cell, height = rows * cell;
   Scene scene = test::empty_scene();
   scene.blocks = {test::fixed_block("floor", test::rectangle(-1.0, -1.0, width + 2.0, 1.0)),
-                  test::fixed_block("left", test::rectangle(-1.0, 0.0, 1.0, height)), test::fixed_block("right", test::rectangle(width, 0.0, 1.0, height))};
+                  test::fixed_block("left", test::rectangle(-1.0, 0.0, 1.0, height)),
+                  test::fixed_block("right", test::rectangle(width, 0.0, 1.0, height))};
   for (int k = 0; k < columns * rows; ++k) {
     const auto scattered = [&](int step) { return std::sin(step * k + 2.0); };
     const double a = 0.175 + 0.025 * scattered(3), b = 0.175 + 0.025 * scattered(5), turn = 0.05 * scattered(7);
