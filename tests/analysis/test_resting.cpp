@@ -310,7 +310,8 @@ TEST_CASE("no block rests while the base shakes", "[analysis][resting]") {
 }
 
 TEST_CASE("dem: a shaking base wakes blocks before the length of the step is chosen", "[analysis][resting]") {
-  // At rest there is nothing that would limit the step, and for another block, which flies, all is looked at that is near.
+  // At rest there is nothing that would limit the step. Beside a block that flies, contacts are listed as far as that one comes in a step, so that
+  // the one at rest could be pressed into its base as far without that the step were refused.
   std::array<double, 2> damped{};
   for (const bool skips : {false, true}) {
     Scene scene = prepared(test::block_on_base(), "dem", skips);
@@ -327,8 +328,11 @@ TEST_CASE("dem: a shaking base wakes blocks before the length of the step is cho
     run.go(0.1);
     CHECK(run.resting() == 0);
     damped[skips] = run.simulation.ledger().contact_damping;
+    run.go(0.4);
+    CHECK(run.way(1).norm() < 1e-3);
   }
-  // In a step of the one that flies it would be pressed into its base by many closures of the joint.
+  // Dashpots take what it comes back with, a hundred times of what comes of gravity at the start.
+  REQUIRE(damped[0] > 0.0);
   CHECK(damped[1] == Approx(damped[0]).epsilon(0.1));
 }
 

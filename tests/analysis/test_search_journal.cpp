@@ -121,13 +121,10 @@ TEST_CASE("a search for the multiplier of a load goes on bit for bit", "[analysi
 }
 
 TEST_CASE("a search among many blocks goes on bit for bit, with what the linear solver keeps", "[analysis][search_journal]") {
-  // Of these two the matrix has entries later that it has not had at first, so that a new solver would have another order.
-  for (const std::string name : {"slope_face_60_joints_20_m70", "slope_face_70_joints_0_m70"}) {
-    INFO(name);
-    Scene jointed = read_scene(std::string(OPENCLOSE_VERIFICATION_SCENES) + "/" + name + ".toml");
-    jointed.strength_reduction.definition = FactorDefinition::joint_closures;
-    check_goes_on(jointed);
-  }
+  // Here the matrix has entries later that it did not have at first, so that a solver made anew would have another order.
+  Scene jointed = read_scene(std::string(OPENCLOSE_VERIFICATION_SCENES) + "/slope_face_70_joints_0_m70.toml");
+  jointed.strength_reduction.definition = FactorDefinition::joint_closures;
+  check_goes_on(jointed);
   Scene scene = read_scene(std::string(OPENCLOSE_VERIFICATION_SCENES) + "/slope_face_60_columns_m70.toml");
   for (const std::string method : {"soft", "shi"}) {
     INFO(method);

@@ -81,6 +81,11 @@ Scene leaning_columns(int columns, const std::vector<double>& heights, double ga
   return scene;
 }
 
+/// Of eight blocks each, whose joints are open by up to 0.7 mm.
+Scene high_columns() {
+  return leaning_columns(3, {10.0, 20.0, 40.0, 20.0, 40.0, 10.0, 20.0, 40.0}, 7e-4, 0.387, 3.048);
+}
+
 /// `soft`, whose second step is a displacement that no force explains.
 class RunsAwayOnce : public Enforcement {
  public:
@@ -564,7 +569,7 @@ TEST_CASE("open joints close to the tolerance of rigid contacts", "[analysis][se
     for (const Contact& c : simulation.change_contacts()) CHECK(c.gap >= -3.5 * scene.method.gap_tolerance);
   };
   SECTION("0.7 mm, of high columns") {
-    settles(leaning_columns(3, {10.0, 20.0, 40.0, 20.0, 40.0, 10.0, 20.0, 40.0}, 7e-4, 0.387, 3.048));
+    settles(high_columns());
   }
   SECTION("7 mm, of narrow columns") {
     settles(leaning_columns(3, {10.0, 20.0, 40.0, 10.0, 40.0, 10.0, 10.0}, 7e-3, 0.4764, 1.531));
@@ -583,6 +588,7 @@ TEST_CASE("a corner that enters another block while rigid contacts settle is met
     const RunResult result = run(simulation, {});
     INFO(result.reason);
     CHECK(result.converged);
+    return simulation.state().counters.entry_cuts;
   };
   SECTION("the corners of diagonal blocks, 0.14 mm apart in the drawing, meet while the columns go 0.7 mm") {
     Scene scene = leaning_columns(4, {10.0, 10.0, 40.0, 40.0}, 1.408e-4, 0.6079, 3.401);
@@ -592,8 +598,8 @@ TEST_CASE("a corner that enters another block while rigid contacts settle is met
     scene.joints[0].friction_angle = 31.377 * test::degree;
     settles(scene);
   }
-  SECTION("the same in columns of eight blocks, whose joints are open by more") {
-    settles(leaning_columns(3, {10.0, 20.0, 40.0, 20.0, 40.0, 10.0, 20.0, 40.0}, 7e-4, 0.387, 3.048));
+  SECTION("corners of high columns with open joints, before which steps are cut") {
+    CHECK(settles(high_columns()) > 0);
   }
 }
 

@@ -681,7 +681,9 @@ TEST_CASE("messages go into no table where standard error is closed", "[cli]") {
   const Workplace place("");
   REQUIRE(place.run("new slope -o slope.toml -q").status == 0);
   const std::string there = "cd '" + place.folder().path() + "' && '" OPENCLOSE_COMMAND "' ";
-  // The folder takes the first number that is free, a table the second.
+  const CommandResult open = place.run("fos slope.toml -o told");
+  REQUIRE(!open.errors.empty());  // there is something to say
+  // If nothing took the place of closed streams, the output folder would get the first free number, a table the second.
   CHECK(std::system((there + "fos slope.toml -o out <&- >/dev/null 2>&-").c_str()) == 0);
   for (const auto& entry : std::filesystem::directory_iterator(place.folder() / "out")) {
     INFO(entry.path());

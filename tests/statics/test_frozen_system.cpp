@@ -164,16 +164,20 @@ TEST_CASE("the joints between two blocks are sections, each along one line", "[s
       CHECK(size(system, system.sections()[0]) == Approx(2.0).epsilon(1e-5));
     }
   }
-  SECTION("where both blocks have a corner the halves of two pairs of faces meet, and nothing is missing") {
+  const auto corners_on_corners = [] {
     Scene scene = test::block_on_base();
+    scene.blocks[0].vertices = {{-10.0, -1.0}, {10.0, -1.0}, {10.0, 0.0}, {1.3, 0.0}, {0.4, 0.0}, {-10.0, 0.0}};
+    scene.blocks[1].vertices = {{0.0, 0.0}, {0.4, 0.0}, {1.3, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}};
+    return scene;
+  };
+  SECTION("where both blocks have a corner the halves of two pairs of faces meet, and nothing is missing") {
+    Scene scene = corners_on_corners();
     JointProperties bridge = scene.joints[0];
     bridge.name = "bridge";
     bridge.materials = {JointProperties::no_material, JointProperties::no_material};
     scene.joints.push_back(bridge);
     constexpr int none = BlockInput::by_materials;
-    scene.blocks[0].vertices = {{-10.0, -1.0}, {10.0, -1.0}, {10.0, 0.0}, {1.3, 0.0}, {0.4, 0.0}, {-10.0, 0.0}};
     scene.blocks[0].edge_joints = {none, none, none, 1, none, none};
-    scene.blocks[1].vertices = {{0.0, 0.0}, {0.4, 0.0}, {1.3, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}};
     scene.blocks[1].edge_joints = {none, 1, none, none, none, none};
     const FrozenSystem system(scene);
     double of_bridge = 0.0;
@@ -184,10 +188,10 @@ TEST_CASE("the joints between two blocks are sections, each along one line", "[s
     for (const PlaceInJoint& place : system.sections()[0]) CHECK(place.filled == 0.0);
   }
   SECTION("the same where all is one joint, whichever of the two contacts at a corner comes first") {
-    Scene scene = test::block_on_base();
-    scene.blocks[0].vertices = {{-10.0, -1.0}, {10.0, -1.0}, {10.0, 0.0}, {1.3, 0.0}, {0.4, 0.0}, {-10.0, 0.0}};
-    scene.blocks[1].vertices = {{0.0, 0.0}, {0.4, 0.0}, {1.3, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}};
-    if (GENERATE(false, true)) std::swap(scene.blocks[0], scene.blocks[1]);
+    Scene scene = corners_on_corners();
+    const bool is_swapped = GENERATE(false, true);  // which turns the order of the two
+    CAPTURE(is_swapped);
+    if (is_swapped) std::swap(scene.blocks[0], scene.blocks[1]);
     const FrozenSystem system(scene);
     REQUIRE(system.sections().size() == 1);
     CHECK(size(system, system.sections()[0]) == Approx(2.0));
