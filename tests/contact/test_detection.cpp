@@ -405,14 +405,15 @@ TEST_CASE("a block does not catch on a flush seam that leans towards it, before 
   const double sunk = GENERATE(0.0, 1e-8, 1e-4);
   const double before = GENERATE(0.01, 0.04);  // [m] from the seam
   const double back = std::tan(lean);
-  Detection d(
-      scene_with({fixed_block("near", {{-5.0, -1.0}, {-back, -1.0}, {0.0, 0.0}, {-5.0, 0.0}}),
-                  fixed_block("far", {{-back, -1.0}, {5.0, -1.0}, {5.0, 0.0}, {0.0, 0.0}}), free_block("block", rectangle(-1.5, -sunk, 1.0, 0.3))}),
-      0.05);
+  const bool is_ground = GENERATE(true, false);  // in one body of fixed blocks the seam's ends are no corners
+  const std::vector<Vec2> near{{-5.0, -1.0}, {-back, -1.0}, {0.0, 0.0}, {-5.0, 0.0}}, far{{-back, -1.0}, {5.0, -1.0}, {5.0, 0.0}, {0.0, 0.0}};
+  Detection d(scene_with({is_ground ? fixed_block("near", near) : free_block("near", near),
+                          is_ground ? fixed_block("far", far) : free_block("far", far), free_block("block", rectangle(-1.5, -sunk, 1.0, 0.3))}),
+              0.05);
   for (Contact& c : d.contacts) c.status = ContactStatus::sliding;
   d.move(2, 0.5 - before, 0.0);
   d.update();
-  CAPTURE(lean, sunk, before);
+  CAPTURE(lean, sunk, before, is_ground);
   CHECK(d.find(9, 7) == nullptr);  // its front corner on the far side
   CHECK(d.find(7, 9) == nullptr);  // the far one's corner on its front
   CHECK(d.find(9, 2) != nullptr);
@@ -456,6 +457,20 @@ TEST_CASE("tips that meet where joints cross at a small angle do not touch while
     const Vec2 along = d.system.arm(d.system.next(c.edge)) - d.system.arm(c.edge);
     CHECK(std::abs(along.y() / along.x()) == Approx(std::tan(steep * degree)));
   }
+}
+
+TEST_CASE("a fixed wedge between the tips of two blocks keeps them from touching, though it is no part of the fixed one", "[contact][detection]") {
+  // Both wedges lie between the edges of the blocks below and above, which cross at eight degrees, and along none of them.
+  const auto tip_at = [](double x, double slope) { return Vec2(x, x * std::tan(slope * degree)); };
+  const Vec2 corner(0.0, 0.0);
+  const std::vector<Vec2> behind{corner, tip_at(3.0, 7.0), tip_at(3.0, 9.0)}, ahead{tip_at(-3.0, 9.0), corner, tip_at(-3.0, 7.0)};
+  const bool is_fixed = GENERATE(false, true);
+  CAPTURE(is_fixed);
+  const Detection d(scene_with({fixed_block("below", {{-3.0, -3.0}, {3.0, -3.0}, tip_at(3.0, 4.0), corner, tip_at(-3.0, 12.0)}),
+                                free_block("above", {tip_at(-3.0, 4.0), corner, tip_at(3.0, 12.0), {3.0, 3.0}, {-3.0, 3.0}}),
+                                is_fixed ? fixed_block("behind", behind) : free_block("behind", behind),
+                                is_fixed ? fixed_block("ahead", ahead) : free_block("ahead", ahead)}));
+  for (const Contact& c : d.contacts) CHECK(std::pair(0, 1) != std::minmax({c.vertex_block, c.edge_block}));
 }
 
 TEST_CASE("two wedges side by side touch along the joint between them alone", "[contact][detection]") {
