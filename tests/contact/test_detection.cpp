@@ -651,6 +651,26 @@ TEST_CASE("tips that have gone right through each other are held by the one line
   CHECK(d.find(0, 5)->gap == Approx(-behind_side_of_other).margin(1e-12));
 }
 
+TEST_CASE("a needle's tip just ahead of a side does not hold the far end of that side, however narrow the angle between them",
+          "[contact][detection]") {
+  // The tip (3) is some micrometres ahead of the block's side (2), within the angle of edges that face each other; the side's far end (2) is 20 mm
+  // behind the needle's own side (3). The needle comes from one side of the block's tip or from the other.
+  struct Pair {
+    double first, second;                      // [deg] of the block's two sides
+    double first_of_needle, second_of_needle;  // [deg]
+    Vec2 start, end;                           // [m] of its tip; the block's is the origin
+  };
+  const Pair p = GENERATE(values<Pair>(
+      {{17.0, 41.6, 27.5, 36.1, {0.0183, -0.0141}, {1.01e-6, 6.89e-6}}, {108.9, 181.5, 170.1, 178.6, {0.0137, 0.0125}, {2.77e-6, -2.52e-6}}}));
+  Detection d(scene_with({free_block("block", {Vec2(0.0, 0.0), at(0.07, p.first), at(0.1, p.second)}),
+                          free_block("needle", {p.start, p.start + at(0.2, p.first_of_needle), p.start + at(0.1, p.second_of_needle)})}));
+  d.move(1, p.end.x() - p.start.x(), p.end.y() - p.start.y());
+  d.update();
+  CAPTURE(p.first);
+  REQUIRE(d.contacts.size() == 1);
+  CHECK(d.contacts[0].gap > 0.0);
+}
+
 TEST_CASE("a needle that has come off the face that held it, behind its line, is held by the other block's tip", "[contact][detection]") {
   // The needle's tip (3) has slid down the face (0) of the other block to past its end and stands 37 micrometres behind its line, in no block any
   // more; the needle's upper side (5) has come behind the other block's tip (0).
