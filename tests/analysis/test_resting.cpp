@@ -310,8 +310,8 @@ TEST_CASE("no block rests while the base shakes", "[analysis][resting]") {
 }
 
 TEST_CASE("dem: a shaking base wakes blocks before the length of the step is chosen", "[analysis][resting]") {
-  // At rest there is nothing that would limit the step. Beside a block that flies, contacts are listed as far as that one comes in a step, so that
-  // the one at rest could be pressed into its base as far without that the step were refused.
+  // At rest there is nothing that would limit the step. Beside a block that flies, contacts are listed as far as that one comes in a step: the one at
+  // rest could be pressed into its base as far, and the step would not be refused.
   std::array<double, 2> damped{};
   for (const bool skips : {false, true}) {
     Scene scene = prepared(test::block_on_base(), "dem", skips);

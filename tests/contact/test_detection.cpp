@@ -636,7 +636,7 @@ TEST_CASE("tips that have gone right through each other are held by the one line
     double first_of_other, second_of_other;  // [deg] of the other's
     Vec2 start, end;                         // [m] of its tip; the block's is the origin
   };
-  // A blunt tip and a sharp one 0.2 mm through each other; two that are just so.
+  // A blunt tip and a sharp one, 0.2 mm and 8 micrometres through each other.
   const Tips t = GENERATE(values<Tips>(
       {{49.6, 125.2, 335.9, 355.0, {-0.0111, 0.0066}, {-1.55e-4, 1.81e-4}}, {174.8, 254.6, 131.6, 151.1, {0.0084, -0.0107}, {-2.6e-7, -8.35e-6}}}));
   Detection d(scene_with({free_block("block", {Vec2(0.0, 0.0), at(0.07, t.first), at(0.1, t.second)}),

@@ -57,8 +57,7 @@ Scene column(int blocks, double dt, int steps) {
   return scene;
 }
 
-/// Boxes of 0.30 to 0.40 m, turned a little, that fall between two walls: cohesion acts that is
-/// worth some 60 times their weight as soon as they touch by a face.
+/// Boxes of 0.30 to 0.40 m, turned a little, that fall between two walls. As soon as they touch by a face cohesion acts, some 60 times their weight.
 Scene cohesive_boxes() {
   constexpr int columns = 8, rows = 9;
   constexpr double cell = 0.6, width = columns * cell, height = rows * cell;
@@ -242,10 +241,11 @@ TEST_CASE("a step of which the passes do not find the multipliers is cut to what
     CHECK_FALSE(step.accepted);
     CHECK(step.part > 0.0);
     CHECK(step.part < 0.5);
-    return;
   }
-  REQUIRE(run(simulation, {}).converged);
-  CHECK(simulation.state().counters.cuts > 0);
+  SECTION("and goes on") {
+    REQUIRE(run(simulation, {}).converged);
+    CHECK(simulation.state().counters.cuts > 0);
+  }
 }
 
 TEST_CASE("steps of which the passes find no multipliers are cut before blocks pass into each other", "[integrator][hard]") {
